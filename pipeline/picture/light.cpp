@@ -94,7 +94,8 @@ Scene::Vector normal_towards(const Scene& scene, std::uint32_t what, const View&
   return behind ? Scene::Vector{-t.normal.x, -t.normal.y, -t.normal.z} : t.normal;
 }
 
-Light light_of(const Scene& scene, const View& view, const Samples& samples, const RenderOptions& options) {
+Light light_of(const Scene& scene, const View& view, const Samples& samples, const RenderOptions& options,
+               const Scene& occluders) {
   Light light;
   light.sun.assign(samples.what.size(), 255);
   const Receivers receivers = receivers_of(scene, view, samples);
@@ -152,7 +153,7 @@ Light light_of(const Scene& scene, const View& view, const Samples& samples, con
         const Point3& to_light = directions[static_cast<std::size_t>(d)];
         const float lx = static_cast<float>(to_light.x), ly = static_cast<float>(to_light.y),
                     lz = static_cast<float>(to_light.z);
-        map.draw(scene, to_light, receivers.box);
+        map.draw(occluders, to_light, receivers.box);
         const auto lift = static_cast<float>(1.1 * map.cell());
         for (Asker& a : askers) {
           const Scene::Vector& n = a.normal;

@@ -28,7 +28,9 @@ struct Light {
 
 /// Each of the directions to the sky is asked by every `supersampling`²-th sample only, so that a pixel gets the mean of
 /// all of them for the price of one sample.
-Light light_of(const Scene& scene, const View& view, const Samples& samples, const RenderOptions& options);
+/// \param occluders  as render() has it
+Light light_of(const Scene& scene, const View& view, const Samples& samples, const RenderOptions& options,
+               const Scene& occluders);
 
 /// Unit vector towards the sun.
 Point3 to_sun(const RenderOptions& options);

@@ -145,12 +145,13 @@ class Edges {
 /// Colours of samples.
 class Shader {
  public:
-  Shader(const Scene& scene, const View& view, const Samples& samples, const RenderOptions& options)
+  Shader(const Scene& scene, const View& view, const Samples& samples, const RenderOptions& options,
+         const Scene& occluders)
       : scene_(scene),
         view_(view),
         samples_(samples),
         options_(options),
-        light_(options.lit ? light_of(scene, view, samples, options) : Light{}),
+        light_(options.lit ? light_of(scene, view, samples, options, occluders) : Light{}),
         edges_(scene, view, samples, options),
         background_(tones_.linear(options.background)) {
     const Point3 sun = to_sun(options);
@@ -235,7 +236,7 @@ class Shader {
 
 }  // namespace
 
-Image render(const Scene& scene, const Camera& camera, const RenderOptions& options) {
+Image render(const Scene& scene, const Camera& camera, const RenderOptions& options, const Scene* occluders) {
   const auto check = [](int value, int most, const char* what) {
     if (value < 1 || value > most) throw std::invalid_argument(std::string("picture: ") + what + " out of range");
   };
@@ -249,7 +250,7 @@ Image render(const Scene& scene, const Camera& camera, const RenderOptions& opti
   const int ss = options.supersampling;
   const View view(camera, scene.origin(), options.width * ss, options.height * ss);
   const Samples samples = see(scene, view);
-  const Shader shader(scene, view, samples, options);
+  const Shader shader(scene, view, samples, options, occluders ? *occluders : scene);
 
   Image image{options.width, options.height, {}};
   image.rgb.resize(static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height) * 3);

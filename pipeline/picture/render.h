@@ -30,9 +30,13 @@ struct RenderOptions {
 
 /// The picture that `camera` takes of the scene.
 ///
+/// `occluders`: what takes light of the sky away; null: the scene. A simpler model of a scene with much detail shades it as well: the
+/// sky's depth maps have cells of half a metre, and each of them draws all of it.
+///
 /// Same scene, camera and options → same bytes on every x86-64. One thread; 1200 x 800 with 350,000 triangles seen from both sides take 1.4 s, with 17,000 0.6 s.
 /// Memory: 13 bytes a sample, 40 bytes a pixel and one depth map at a time.
 /// \throws std::invalid_argument  a size or count that is not positive, or beyond 8192 pixels
-Image render(const Scene& scene, const Camera& camera, const RenderOptions& options = {});
+Image render(const Scene& scene, const Camera& camera, const RenderOptions& options = {},
+             const Scene* occluders = nullptr);
 
 }  // namespace blockrand::picture

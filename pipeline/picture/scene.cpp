@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <iterator>
 
 #include "pipeline/model/vector.h"
 
@@ -62,6 +63,21 @@ void Scene::add(const model::Solid& solid, const model::SolidTriangles& triangle
   for (std::size_t i = first; i < triangles_.size(); ++i) triangles_[i].colours = {colour, colour, colour};
 }
 
+void Scene::add_without(const model::Solid& solid, const model::SolidTriangles& triangles,
+                        const std::vector<bool>& hidden, std::uint32_t object) {
+  for (std::size_t f = 0; f < solid.faces.size(); ++f) {
+    if (f < hidden.size() && hidden[f]) continue;
+    for (std::uint32_t t = triangles.first[f]; t < triangles.first[f + 1]; ++t) {
+      const auto& c = triangles.triangles[t];
+      add_outside({solid.vertices[c[0]], solid.vertices[c[1]], solid.vertices[c[2]]}, solid.faces[f].colour, object);
+    }
+  }
+}
+
+void Scene::add_outside(const std::array<Point3, 3>& corners, Colour colour, std::uint32_t object) {
+  push(corners, {colour, colour, colour}, object, true);
+}
+
 void Scene::add_triangle(const std::array<Point3, 3>& corners, Colour colour, std::uint32_t object) {
   push(corners, {colour, colour, colour}, object, false);
 }
@@ -79,6 +95,14 @@ void Scene::append(const Scene& other, std::uint32_t first_object) {
   triangles_.insert(triangles_.end(), other.triangles_.begin(), other.triangles_.end());
   for (std::size_t i = first; i < triangles_.size(); ++i) triangles_[i].object += first_object;
   if (!ground_) ground_ = other.ground_;
+}
+
+Scene Scene::without(const std::vector<bool>& hidden) const {
+  Scene out(origin_);
+  out.ground_ = ground_;
+  std::ranges::copy_if(triangles_, std::back_inserter(out.triangles_),
+                       [&](const Triangle& t) { return t.object >= hidden.size() || !hidden[t.object]; });
+  return out;
 }
 
 Box Scene::bounds() const {

@@ -39,6 +39,11 @@ class Scene {
   /// As above, all faces in one colour.
   void add(const model::Solid& solid, const model::SolidTriangles& triangles, std::uint32_t object, Point3 offset,
            Colour colour);
+  /// As the first, without some faces. \param hidden  by face; empty: none
+  void add_without(const model::Solid& solid, const model::SolidTriangles& triangles, const std::vector<bool>& hidden,
+                   std::uint32_t object);
+  /// A triangle of a closed surface: seen from where its corners run counter-clockwise. Degenerate ones are left out.
+  void add_outside(const std::array<Point3, 3>& corners, Colour colour, std::uint32_t object);
   /// A triangle that is seen from both sides. Degenerate triangles are left out.
   void add_triangle(const std::array<Point3, 3>& corners, Colour colour, std::uint32_t object);
   /// As above with a colour per corner, blended in between (heat maps).
@@ -48,6 +53,8 @@ class Scene {
   void set_ground(double z, Colour colour);
   /// Everything of `other`, whose origin must be the same, its objects renumbered by adding `first_object`.
   void append(const Scene& other, std::uint32_t first_object = 0);
+  /// The same without some objects. \param hidden  by object; what lies behind its end stays
+  Scene without(const std::vector<bool>& hidden) const;
 
   Point3 origin() const { return origin_; }
   /// Of the triangles, in the coordinates of what was added.

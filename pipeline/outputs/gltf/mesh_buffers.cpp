@@ -25,7 +25,8 @@ struct SolidRef {
   std::vector<bool> hidden;  ///< faces that elements stand for; empty: none
 };
 
-/// Faces of a LoD3 solid that are left to elements.
+}  // namespace
+
 std::vector<bool> hidden_faces(const model::Region& region, const model::Detail& detail, bool bake) {
   std::vector<bool> hidden(detail.solid.faces.size(), false);
   for (const model::Placement& p : detail.placements) {
@@ -38,6 +39,8 @@ std::vector<bool> hidden_faces(const model::Region& region, const model::Detail&
   }
   return hidden;
 }
+
+namespace {
 
 /// The best solid of the part at or below `lod`, or nullptr.
 std::pair<const model::Solid*, const model::SolidTriangles*> solid_of(const model::BuildingPart& part, int lod) {

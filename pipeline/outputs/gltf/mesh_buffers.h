@@ -43,6 +43,9 @@ struct Mesh {
   bool empty() const { return primitives.empty(); }
 };
 
+/// Faces of a LoD3 solid that are left to elements: the polygons of openings, and unless `bake` is set their reveals. By face.
+std::vector<bool> hidden_faces(const model::Region& region, const model::Detail& detail, bool bake);
+
 /// The solids of all parts of owned buildings, each at level of detail `lod` or, where it was not reached, the best
 /// one below; with `lod` 0 their footprints. Features count the parts, with or without a solid, in the order of
 /// building_table().

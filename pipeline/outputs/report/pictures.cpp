@@ -6,10 +6,14 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/text.h"
 #include "pipeline/georef/tiles.h"
+#include "pipeline/model/vector.h"
+#include "pipeline/outputs/gltf/element_geometry.h"
+#include "pipeline/outputs/gltf/mesh_buffers.h"
 #include "pipeline/picture/render.h"
 
 namespace blockrand::outputs {
@@ -53,21 +57,25 @@ std::vector<Point3> core_points(const std::vector<PicturedBuilding>& buildings) 
   return out;
 }
 
-/// Stands on the ground and has the size of a house: neither a shed, nor a hall, nor a part of a roof.
-bool like_a_house(const PicturedBuilding& b) {
-  const double area = (b.box.max.x - b.box.min.x) * (b.box.max.y - b.box.min.y);
-  return b.box.max.z - b.ground >= 5 && b.box.min.z - b.ground < 2 && area >= 60 && area <= 2500;
-}
+/// m², of boxes: neither a shed nor a hall.
+constexpr double kLeastHouse = 60, kLargestHouse = 2500;
 
-/// The middle of the cell that has, with its neighbours, the most houses; where there is none, the most of anything.
-Point3 densest_spot(const std::vector<PicturedBuilding>& buildings) {
+/// An outline before its building is made.
+struct Outline {
+  model::Point2 centre;
+  double area = 0;  ///< m², of its box
+};
+
+/// The middle of the cell that has, with its neighbours, the most outlines of the size of a house; where there is none, the most of
+/// anything.
+model::Point2 densest_spot(const std::vector<Outline>& outlines) {
   constexpr double kCell = 50;  // m
   using Key = std::pair<std::int64_t, std::int64_t>;
   for (const bool houses_only : {true, false}) {
     std::map<Key, std::uint64_t> cells;
-    for (const PicturedBuilding& b : buildings) {
-      if (houses_only && !like_a_house(b)) continue;
-      const Point3 c = b.box.centre();
+    for (const Outline& b : outlines) {
+      if (houses_only && (b.area < kLeastHouse || b.area > kLargestHouse)) continue;
+      const model::Point2 c = b.centre;
       const Key home{static_cast<std::int64_t>(std::floor(c.x / kCell)),
                      static_cast<std::int64_t>(std::floor(c.y / kCell))};
       for (std::int64_t x = -1; x <= 1; ++x)
@@ -77,13 +85,113 @@ Point3 densest_spot(const std::vector<PicturedBuilding>& buildings) {
         std::max_element(cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
     if (best == cells.end()) continue;
     return {(static_cast<double>(best->first.first) + 0.5) * kCell,
-            (static_cast<double>(best->first.second) + 0.5) * kCell, 0};
+            (static_cast<double>(best->first.second) + 0.5) * kCell};
   }
   return {};
 }
 
+bool within(model::Point2 p, model::Point2 spot, double reach) {
+  return (p.x - spot.x) * (p.x - spot.x) + (p.y - spot.y) * (p.y - spot.y) <= reach * reach;
+}
+
+/// Where a building has no outline, nothing.
+std::optional<Outline> outline_of(const footprints::FootprintStore& store, std::uint32_t building) {
+  double x0 = 1e300, y0 = 1e300, x1 = -1e300, y1 = -1e300;
+  store.for_each_ring(building, [&](std::span<const model::Point2> points, bool) {
+    for (const model::Point2 p : points)
+      x0 = std::min(x0, p.x), y0 = std::min(y0, p.y), x1 = std::max(x1, p.x), y1 = std::max(y1, p.y);
+  });
+  if (!(x1 > x0)) return std::nullopt;
+  return Outline{{(x0 + x1) / 2, (y0 + y1) / 2}, (x1 - x0) * (y1 - y0)};
+}
+
+/// m around the densest spot: its picture shows what stands behind it as well.
+constexpr double kPicturedReach = kDetailReach + 35;
+
+bool has_detail(const model::BuildingPart& part) { return part.lod >= 3 && !part.lod3.solid.empty(); }
+
+/// Puts what LoD3 adds into scenes.
+class DetailPainter {
+ public:
+  explicit DetailPainter(const model::Region& region) : region_(region) {}
+
+  /// Windows and doors as flat pieces a little before the walls of LoD2, and what stands on the roof.
+  void add_flat(const model::BuildingPart& part, std::uint32_t object, picture::Scene& scene) const {
+    const model::Detail& detail = part.lod3;
+    std::vector<const model::ColouredElement*> element_in(detail.openings.size(), nullptr);
+    for (const model::Placement& p : detail.placements)
+      if (p.opening != model::kNoOpening) element_in[p.opening] = &region_.elements.at(p.element);
+    for (std::size_t i = 0; i < detail.openings.size(); ++i) {
+      const model::Opening& o = detail.openings[i];
+      if (o.kind == model::OpeningKind::passage) continue;
+      const model::Solid& solid = detail.solid;
+      const auto first = detail.triangles.first[o.polygon], end = detail.triangles.first[o.polygon + 1];
+      const auto wall = detail.triangles.first[o.wall];
+      if (first == end || wall == detail.triangles.first[o.wall + 1]) continue;
+      const auto corner = [&](std::uint32_t triangle, std::size_t k) {
+        return solid.vertices[detail.triangles.triangles[triangle][k]];
+      };
+      const Point3 a = corner(wall, 0), out = model::unit(cross(corner(wall, 1) - a, corner(wall, 2) - a));
+      const Point3 shift = out * (dot(a - corner(first, 0), out) + kBeforeWall);
+      const model::Colour colour = colour_of(o, element_in[i], solid);
+      for (std::uint32_t t = first; t < end; ++t)
+        scene.add_triangle({corner(t, 0) + shift, corner(t, 1) + shift, corner(t, 2) + shift}, colour, object);
+    }
+    for (const model::RoofInstallation& body : detail.roof_installations) scene.add(body.solid, body.triangles, object);
+  }
+
+  /// Everything, or what the part has where it has no LoD3.
+  void add(const model::BuildingPart& part, std::uint32_t object, picture::Scene& scene) {
+    if (!has_detail(part)) {
+      const bool with_roof = part.lod >= 2 && !part.lod2.empty();
+      if (const model::Solid& solid = with_roof ? part.lod2 : part.lod1; !solid.empty())
+        scene.add(solid, with_roof ? part.lod2_triangles : part.lod1_triangles, object);
+      return;
+    }
+    const model::Detail& detail = part.lod3;
+    scene.add_without(detail.solid, detail.triangles, hidden_faces(region_, detail, true), object);
+    for (const model::WallInstallation& body : detail.installations) scene.add(body.solid, body.triangles, object);
+    for (const model::RoofInstallation& body : detail.roof_installations) scene.add(body.solid, body.triangles, object);
+    for (const model::Placement& p : detail.placements) {
+      const model::ColouredElement& element = region_.elements.at(p.element);
+      const model::Point2 out{p.along.y, -p.along.x};
+      const auto placed = [&](const Point3& v) {
+        return Point3{p.origin.x + p.along.x * v.x + out.x * v.z, p.origin.y + p.along.y * v.x + out.y * v.z,
+                      p.origin.z + v.y};
+      };
+      for (const ElementGeometry::PartTriangles& piece : geometry_of(p.element).parts) {
+        const model::Colour colour = element.materials[static_cast<std::size_t>(piece.part)].colour;
+        const auto at = [&](std::size_t i) { return placed(piece.vertices[piece.indices[i]].position); };
+        for (std::size_t i = 0; i + 2 < piece.indices.size(); i += 3)
+          scene.add_outside({at(i), at(i + 1), at(i + 2)}, colour, object);
+      }
+    }
+  }
+
+ private:
+  /// m: two surfaces in one place would flicker in the z-buffer.
+  static constexpr double kBeforeWall = 0.03;
+
+  static model::Colour colour_of(const model::Opening& opening, const model::ColouredElement* element,
+                                 const model::Solid& solid) {
+    if (!element) return solid.faces[opening.polygon].colour;
+    const bool door = opening.kind == model::OpeningKind::door;
+    return element->materials[static_cast<std::size_t>(door ? model::ElementPart::leaf : model::ElementPart::glass)]
+        .colour;
+  }
+
+  const ElementGeometry& geometry_of(std::uint32_t element) {
+    const auto [found, added] = geometry_.try_emplace(element);
+    if (added) found->second = element_geometry(*region_.elements.at(element).element, false);
+    return found->second;
+  }
+
+  const model::Region& region_;
+  std::map<std::uint32_t, ElementGeometry> geometry_;  ///< by element
+};
+
 /// Corners of what stands within `reach` of a spot.
-std::vector<Point3> points_near(const picture::Scene& scene, Point3 spot, double reach) {
+std::vector<Point3> points_near(const picture::Scene& scene, model::Point2 spot, double reach) {
   std::vector<Point3> out;
   const Point3 o = scene.origin();
   for (const picture::Scene::Triangle& t : scene.triangles())
@@ -129,10 +237,11 @@ View best_view(std::span<const Point3> points) {
 
 }  // namespace
 
-PicturePlan plan_pictures(std::span<const footprints::Shard> shards, const georef::Projection& projection,
-                          std::uint64_t budget) {
+PicturePlan plan_pictures(std::span<const footprints::Shard> shards, const footprints::RepairedExtract& repaired,
+                          const georef::Projection& projection, std::uint64_t budget) {
   PicturePlan plan;
   plan.chosen.assign(shards.size(), false);
+  plan.near_spot.assign(shards.size(), false);
   if (shards.empty()) return plan;
   std::size_t densest = 0;
   for (std::size_t i = 0; i < shards.size(); ++i)
@@ -159,12 +268,25 @@ PicturePlan plan_pictures(std::span<const footprints::Shard> shards, const geore
     plan.chosen[i] = true;
     plan.buildings += shards[i].seeds.size();
   }
+  std::vector<Outline> outlines;
+  std::vector<std::size_t> shard_of;
+  for (std::size_t i = 0; i < shards.size(); ++i)
+    for (std::uint32_t k = 0; plan.chosen[i] && k < shards[i].seeds.size(); ++k)
+      if (const auto outline = outline_of(repaired.footprints, repaired.first[i] + k)) {
+        outlines.push_back(*outline);
+        shard_of.push_back(i);
+      }
+  plan.spot = densest_spot(outlines);
+  constexpr double kMargin = 30;  // m: bodies may stand beside their outline
+  for (std::size_t k = 0; k < outlines.size(); ++k)
+    if (within(outlines[k].centre, plan.spot, kPicturedReach + kMargin)) plan.near_spot[shard_of[k]] = true;
   return plan;
 }
 
 PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, std::size_t shard) {
-  PictureTile tile{picture::Scene(plan.origin), {}};
+  PictureTile tile{picture::Scene(plan.origin), {}, picture::Scene(plan.origin)};
   if (!plan.chosen[shard]) return tile;
+  DetailPainter painter(region);
   for (const model::Building& building : region.buildings) {
     if (!building.owned) continue;
     const auto object = static_cast<std::uint32_t>(tile.buildings.size());
@@ -176,14 +298,23 @@ PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, s
       if (solid.empty()) continue;
       tile.scene.add(solid, with_roof ? part.lod2_triangles : part.lod1_triangles, object);
       for (const Point3& p : solid.vertices) pictured.box.include(p);
+      if (has_detail(part)) painter.add_flat(part, object, tile.scene);
     }
-    if (!pictured.box.empty) tile.buildings.push_back(pictured);
+    if (pictured.box.empty) continue;
+    const Point3 centre = pictured.box.centre();
+    if (plan.near_spot[shard] && within({centre.x, centre.y}, plan.spot, kPicturedReach) &&
+        std::ranges::any_of(building.parts, has_detail)) {
+      pictured.detailed = true;
+      for (const model::BuildingPart& part : building.parts) painter.add(part, object, tile.detail);
+    }
+    tile.buildings.push_back(pictured);
   }
   return tile;
 }
 
 void Pictures::add(PictureTile&& tile) {
   scene_.append(tile.scene, static_cast<std::uint32_t>(buildings_.size()));
+  detail_.append(tile.detail, static_cast<std::uint32_t>(buildings_.size()));
   buildings_.insert(buildings_.end(), tile.buildings.begin(), tile.buildings.end());
 }
 
@@ -242,8 +373,9 @@ std::string Pictures::note() const {
 std::vector<outputs::ReportPicture> Pictures::take(int workers, const base::Memo* memo) {
   if (buildings_.empty()) return {};
   auto out = base::remembered<std::vector<outputs::ReportPicture>>(
-      memo, "pictures", [&](base::Packer& packer) { packer << scene_ << buildings_; }, [&] { return shoot(workers); });
-  scene_ = picture::Scene(plan_.origin);
+      memo, "pictures", [&](base::Packer& packer) { packer << scene_ << detail_ << buildings_ << plan_.spot; },
+      [&] { return shoot(workers); });
+  scene_ = detail_ = picture::Scene(plan_.origin);
   buildings_ = {};
   return out;
 }
@@ -272,18 +404,24 @@ std::vector<outputs::ReportPicture> Pictures::shoot(int workers) {
   };
   add(core, {view.azimuth, kElevation}, kFieldOfView, kWidth, kHeight, fmt::format("Seen from the {}.", view.from));
   add(core, {view.azimuth + 180, kElevation}, kFieldOfView, 960, 600, fmt::format("The same from the {}.", view.to));
-  constexpr double kDetailReach = 75;  // m
-  std::vector<Point3> near = points_near(scene_, densest_spot(buildings_), kDetailReach);
+  std::vector<Point3> near = points_near(scene_, plan_.spot, kDetailReach);
   add(near.empty() ? core : near, {view.azimuth, 27}, 40, 960, 600, "Where houses stand densest.");
   shots.back().options.sky_directions = 64;  // near by, single shades of the sky would show
+
+  std::vector<bool> in_detail;
+  for (const PicturedBuilding& b : buildings_) in_detail.push_back(b.detailed);
+  const bool detailed = !detail_.empty();
+  detail_.append(scene_.without(in_detail));  // now all that the last picture shows
 
   out.resize(shots.size());
   base::ordered_parallel(
       shots.size(), std::min<int>(workers, 2), shots.size(),
       [&](std::size_t i) {
         const Shot& shot = shots[i];
-        out[i] = {picture::png(picture::render(scene_, shot.camera, shot.options)), shot.options.width,
-                  shot.options.height, shot.caption};
+        const bool close = i + 1 == shots.size();
+        out[i] = {
+            picture::png(picture::render(close && detailed ? detail_ : scene_, shot.camera, shot.options, &scene_)),
+            shot.options.width, shot.options.height, shot.caption};
       },
       [](std::size_t) {});
   return out;

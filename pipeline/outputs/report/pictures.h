@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipeline/base/memo.h"
+#include "pipeline/footprints/repair_extract.h"
 #include "pipeline/footprints/shard.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/region.h"
@@ -19,31 +20,39 @@ namespace blockrand::outputs {
 /// picture, and cost memory.
 inline constexpr std::uint64_t kPicturedBuildings = 4000;
 
+/// Around the densest spot, houses at LoD3 are pictured with every element. Further off their windows and doors are flat. m
+inline constexpr double kDetailReach = 75;
+
 /// What the pictures will show, decided before any tile runs, so that only those tiles keep their meshes.
 struct PicturePlan {
   std::vector<bool> chosen;     ///< parallel to the shards
   bool whole = true;            ///< every tile is chosen
   std::uint64_t buildings = 0;  ///< seeds of the chosen tiles
   model::Point3 origin;         ///< of the scene: the middle of the densest tile, build CRS
+  model::Point2 spot;           ///< where houses stand densest among the chosen tiles, build CRS
+  std::vector<bool>
+      near_spot;  ///< parallel to the shards: chosen, and a building may stand within the reach of the spot
 };
 
 /// Chooses the tile with the most buildings and its neighbours by distance, until the next would exceed `budget` or lies
 /// more than some tiles away.
-PicturePlan plan_pictures(std::span<const footprints::Shard> shards, const georef::Projection& projection,
-                          std::uint64_t budget = kPicturedBuildings);
+PicturePlan plan_pictures(std::span<const footprints::Shard> shards, const footprints::RepairedExtract& repaired,
+                          const georef::Projection& projection, std::uint64_t budget = kPicturedBuildings);
 
 /// A building in the scene: the box of its bodies, and the ground under it.
 struct PicturedBuilding {
   picture::Box box;
-  double ground = 0;  ///< m
+  double ground = 0;      ///< m
+  bool detailed = false;  ///< it stands in PictureTile::detail, too
 };
 
 struct PictureTile {
   picture::Scene scene;
-  std::vector<PicturedBuilding> buildings;  ///< object k of the scene is buildings[k]
+  std::vector<PicturedBuilding> buildings;  ///< object k of the scenes is buildings[k]
+  picture::Scene detail;                    ///< of buildings at the densest spot: all of LoD3
 };
 
-/// The best solids of a finished tile; empty for a tile that is not pictured. Pure: safe for different tiles at the same
+/// The bodies of a finished tile, with windows and doors as flat pieces of their walls where it has any; empty for a tile that is not pictured. Pure: safe for different tiles at the same
 /// time.
 /// \param shard  the tile's index
 PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, std::size_t shard);
@@ -51,7 +60,7 @@ PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, s
 /// Collects tiles and takes the pictures: an overview, the same from the other side, and the densest spot.
 class Pictures {
  public:
-  explicit Pictures(const PicturePlan& plan) : plan_(plan), scene_(plan.origin) {}
+  explicit Pictures(const PicturePlan& plan) : plan_(plan), scene_(plan.origin), detail_(plan.origin) {}
 
   /// Takes a tile; call in tile order.
   void add(PictureTile&& tile);
@@ -66,7 +75,7 @@ class Pictures {
   void lay_ground();
   std::vector<outputs::ReportPicture> shoot(int workers);
   PicturePlan plan_;
-  picture::Scene scene_;
+  picture::Scene scene_, detail_;
   std::vector<PicturedBuilding> buildings_;
 };
 

@@ -92,7 +92,7 @@ class ReportOutput : public OutputOf<TileShare> {
  public:
   explicit ReportOutput(const OutputContext& context)
       : context_(context),
-        picture_plan_(plan_pictures(context.shards, context.projection)),
+        picture_plan_(plan_pictures(context.shards, context.repaired, context.projection)),
         pictures_(picture_plan_),
         plan_choice_(choose_plan(context.shards, context.projection, picture_plan_)) {}
 
@@ -108,6 +108,8 @@ class ReportOutput : public OutputOf<TileShare> {
     const bool pictured = picture_plan_.chosen[shard];
     packer << pictured << plan_choice_.chosen[shard];
     if (pictured) packer << picture_plan_.origin;
+    packer << picture_plan_.near_spot[shard];
+    if (picture_plan_.near_spot[shard]) packer << picture_plan_.spot;
     return std::move(packer.bytes);
   }
   void take(const FinishedTile&, std::any product) override {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/georef/crs.h"
+#include "tests/unit/outputs/facade_region.h"
 #include "tests/unit/outputs/sample_region.h"
 
 namespace blockrand::outputs {
@@ -21,16 +22,28 @@ footprints::Shard shard(std::uint32_t x, std::uint32_t y, std::size_t seeds) {
   return s;
 }
 
+footprints::RepairedExtract without_outlines(std::span<const footprints::Shard> shards) {
+  footprints::RepairedExtract repaired;
+  std::uint32_t buildings = 0;
+  for (const footprints::Shard& s : shards) {
+    repaired.first.push_back(buildings);
+    buildings += static_cast<std::uint32_t>(s.seeds.size());
+  }
+  repaired.footprints = footprints::FootprintStore(buildings);
+  return repaired;
+}
+
 PicturePlan all_of(std::size_t shards) {
   PicturePlan plan;
   plan.chosen.assign(shards, true);
+  plan.near_spot.assign(shards, false);
   plan.origin = {391000, 5819000, 0};
   return plan;
 }
 
 TEST(PicturePlan, SmallBuildsArePicturedWhole) {
   const std::vector<footprints::Shard> shards{shard(0, 0, 10), shard(1, 0, 20), shard(4, 3, 5)};
-  const PicturePlan plan = plan_pictures(shards, projection(), 100);
+  const PicturePlan plan = plan_pictures(shards, without_outlines(shards), projection(), 100);
   EXPECT_TRUE(plan.whole);
   EXPECT_EQ(plan.buildings, 35u);
   EXPECT_EQ(plan.chosen, (std::vector<bool>{true, true, true}));
@@ -39,7 +52,7 @@ TEST(PicturePlan, SmallBuildsArePicturedWhole) {
 TEST(PicturePlan, LargeOnesShowTheDensestTileAndItsNeighbours) {
   const std::vector<footprints::Shard> shards{shard(0, 0, 30), shard(1, 0, 30), shard(2, 0, 50), shard(3, 0, 20),
                                               shard(9, 9, 1)};
-  const PicturePlan plan = plan_pictures(shards, projection(), 100);
+  const PicturePlan plan = plan_pictures(shards, without_outlines(shards), projection(), 100);
   EXPECT_FALSE(plan.whole);
   // 50, then its two neighbours at the same distance; the far tile of one building would fit but stands apart.
   EXPECT_EQ(plan.chosen, (std::vector<bool>{false, true, true, true, false}));
@@ -48,19 +61,38 @@ TEST(PicturePlan, LargeOnesShowTheDensestTileAndItsNeighbours) {
 
 TEST(PicturePlan, ScatteredVillagesAreNotPicturedAsSpecks) {
   const std::vector<footprints::Shard> shards{shard(0, 0, 10), shard(1, 0, 20), shard(40, 0, 5)};
-  const PicturePlan plan = plan_pictures(shards, projection(), 100);
+  const PicturePlan plan = plan_pictures(shards, without_outlines(shards), projection(), 100);
   EXPECT_EQ(plan.chosen, (std::vector<bool>{true, true, false}));
   EXPECT_FALSE(plan.whole);
 }
 
 TEST(PicturePlan, TheDensestTileIsShownWhateverTheBudget) {
   const std::vector<footprints::Shard> shards{shard(0, 0, 3), shard(1, 0, 500)};
-  const PicturePlan plan = plan_pictures(shards, projection(), 100);
+  const PicturePlan plan = plan_pictures(shards, without_outlines(shards), projection(), 100);
   EXPECT_EQ(plan.chosen, (std::vector<bool>{false, true}));
 }
 
+TEST(PicturePlan, DetailIsWhereHousesStandDensest) {
+  const std::vector<footprints::Shard> shards{shard(0, 0, 2), shard(1, 0, 12)};
+  footprints::RepairedExtract repaired = without_outlines(shards);
+  const auto house = [&](std::uint32_t number, double x, double y, double size) {
+    model::Polygon p;
+    p.outer.points = {{x, y}, {x + size, y}, {x + size, y + size}, {x, y + size}};
+    p.outer.nodes.assign(4, 0);
+    repaired.footprints.set(number, {}, std::array{p});
+  };
+  house(0, 391000, 5819000, 12);
+  house(1, 391020, 5819000, 12);
+  for (std::uint32_t i = 0; i < 8; ++i) house(2 + i, 391400, 5819000 + 4 * i, 3);       // sheds are no houses
+  for (std::uint32_t i = 0; i < 4; ++i) house(10 + i, 391700 + 15.0 * i, 5819000, 12);  // the densest
+  const PicturePlan plan = plan_pictures(shards, repaired, projection(), 100);
+  EXPECT_NEAR(plan.spot.x, 391725, 50);
+  EXPECT_NEAR(plan.spot.y, 5819000, 50);
+  EXPECT_EQ(plan.near_spot, (std::vector<bool>{false, true}));
+}
+
 TEST(PicturePlan, NoTileIsNoError) {
-  const PicturePlan plan = plan_pictures({}, projection());
+  const PicturePlan plan = plan_pictures({}, footprints::RepairedExtract(), projection());
   Pictures pictures(plan);
   EXPECT_TRUE(pictures.take(2).empty());
   EXPECT_EQ(pictures.note(), "");
@@ -98,6 +130,43 @@ TEST(Pictures, TilesThatAreNotChosenGiveNothing) {
   EXPECT_GT(tile.scene.triangle_count(), 50u);
   EXPECT_EQ(tile.buildings.size(), 5u) << "not the one without solid, not the halo";
   EXPECT_NE(Pictures(plan).note().find("1,234"), std::string::npos);
+}
+
+TEST(Pictures, ShowWindowsAndNearTheSpotEveryElement) {
+  const SampleRegion town = test::facade_region();
+  PicturePlan plan = all_of(1);
+  plan.spot = {391020, 5819020};
+  const PictureTile afar = picture_tile(town.region(), plan, 0);
+  EXPECT_EQ(afar.detail.triangle_count(), 0u);
+  plan.near_spot[0] = true;
+  const PictureTile tile = picture_tile(town.region(), plan, 0);
+  ASSERT_EQ(tile.buildings.size(), 4u);
+  EXPECT_TRUE(tile.buildings[0].detailed);
+  EXPECT_FALSE(tile.buildings[3].detailed) << "it has no LoD3";
+  // A pane with five corners lies flat on its wall; near by its frame, its sill and its reveal are there as well.
+  const auto pane = [](const picture::Scene& scene, bool both_sides) {
+    std::size_t panes = 0;
+    for (const picture::Scene::Triangle& t : scene.triangles())
+      if (t.colours[0].b == 90 && t.colours[0].g == 30 && t.closed != both_sides) ++panes;
+    return panes;
+  };
+  std::size_t windows = 0;
+  for (const model::Building& b : town.region().buildings)
+    for (const model::BuildingPart& part : b.parts)
+      for (const model::Opening& o : part.lod3.openings) windows += o.kind == model::OpeningKind::window;
+  EXPECT_GT(windows, 100u);
+  EXPECT_EQ(pane(tile.scene, true), 3 * windows);
+  EXPECT_GE(pane(tile.detail, false), 3 * windows);
+  EXPECT_GT(tile.detail.triangle_count(), 2 * tile.scene.triangle_count());
+
+  Pictures with(plan);
+  with.add(picture_tile(town.region(), plan, 0));
+  Pictures without(plan);
+  without.add(PictureTile(afar));
+  const auto near = with.take(2), far = without.take(2);
+  ASSERT_EQ(near.size(), 3u);
+  EXPECT_EQ(near[0].png, far[0].png);
+  EXPECT_NE(near[2].png, far[2].png);
 }
 
 TEST(Pictures, HillsHaveGroundUnderTheirHouses) {
