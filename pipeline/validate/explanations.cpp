@@ -131,7 +131,8 @@ class TileRecords {
     if (places_)
       for (const auto& [id, place] : *places_)
         if (!lines_.count(id))
-          findings_.push_back({Check::explanation_wrong, kPlaces, id, "stands there, but tile " + tile_ + " does not explain it"});
+          findings_.push_back(
+              {Check::explanation_wrong, kPlaces, id, "stands there, but tile " + tile_ + " does not explain it"});
     for (const std::string& id : lines_)
       if (!indexed.count(id)) wrong(id, "is not in the index");
     for (const auto& [building, bodies] : bodies_)

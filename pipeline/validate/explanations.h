@@ -40,6 +40,7 @@ ExplainedPlaces read_places(std::string_view text, FindingLog& log);
 std::size_t check_explanations(std::string_view lines, const std::string& file, const std::string& tile,
                                const Contents* model, bool lean,
                                const std::vector<std::pair<std::string, std::string>>& entries,
-                               const std::map<std::string, PlaceRow>* places, const BuildRecord& record, std::vector<Finding>& findings);
+                               const std::map<std::string, PlaceRow>* places, const BuildRecord& record,
+                               std::vector<Finding>& findings);
 
 }  // namespace blockrand::validate

@@ -120,7 +120,8 @@ class Run {
       if (record_.files.count("explain/places.tsv")) {
         if (const auto places = content_of(full("explain/places.tsv"), why)) places_ = read_places(*places, log());
       } else if (index_) {
-        v_.notes.push_back("explain/places.tsv is not listed: an older program made this build, which knows no addresses");
+        v_.notes.push_back(
+            "explain/places.tsv is not listed: an older program made this build, which knows no addresses");
       }
     }
     if (record_.has("gpkg") && record_.files.count("buildings.gpkg") && fs::exists(full("buildings.gpkg"))) {

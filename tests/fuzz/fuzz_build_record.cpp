@@ -47,7 +47,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     default: {
       std::vector<Finding> findings;
-      (void)check_explanations(text, "explain/15_1_2.jsonl.gz", "15_1_2", nullptr, false, {}, nullptr, record, findings);
+      (void)check_explanations(text, "explain/15_1_2.jsonl.gz", "15_1_2", nullptr, false, {}, nullptr, record,
+                               findings);
       break;
     }
   }

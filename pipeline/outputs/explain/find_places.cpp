@@ -276,12 +276,6 @@ std::string places_of(const std::string& folder) {
 
 }  // namespace
 
-FoundPlaces places_like(std::span<const std::string> files, std::string_view text) {
-  return searched(text, [&](auto&& visit) {
-    for (const std::string& file : files) for_each_place(kPlacesFile, file, visit);
-  });
-}
-
 FoundPlaces find_places(const std::string& folder, std::string_view text) {
   check_explained(folder);
   std::vector<std::string> folders;

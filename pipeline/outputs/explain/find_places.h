@@ -1,7 +1,6 @@
 // Finds buildings of a build by address or name.
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,9 +14,6 @@ struct FoundPlaces {
   bool exact = true;                 ///< false: with a number beside the one that was asked for ("5" for "5a", "3-7")
   std::vector<std::string> nearest;  ///< what may have been meant, where `places` is empty
 };
-
-/// As find_places, in texts of explain/places.tsv.
-FoundPlaces places_like(std::span<const std::string> files, std::string_view text);
 
 /// Buildings that `text` names: an address in either order, with or without postcode and town ("Arkonaplatz 5",
 /// "5 arkonapl., Berlin"), a street, or a name ("Zionskirche"). Case, accents and short forms of "street" do not count

@@ -191,6 +191,14 @@ PlaceAddresses place_addresses(std::string_view text) {
       for (std::string& word : place_words(parts[next])) out.locality.push_back(std::move(word));
     out.all.push_back(std::move(address));
   }
+  // "1; Lange Straße 2": numbers without a street before the first that has one.
+  const auto with_street =
+      std::find_if(out.all.begin(), out.all.end(), [](const PlaceAddress& a) { return !a.street.empty(); });
+  if (with_street != out.all.end())
+    for (auto before = out.all.begin(); before != with_street; ++before) {
+      before->street = with_street->street;
+      before->shown_street = with_street->shown_street;
+    }
   return out;
 }
 

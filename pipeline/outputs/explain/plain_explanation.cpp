@@ -21,6 +21,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostReasons = 3, kMostNotes = 3, kMostStreets = 3;
 /// m: smaller moves of corners are told in centimetres.
 constexpr double kInCentimetres = 0.995;
+/// m: corners that moved less are where they are mapped, for anybody who looks at the model.
+constexpr double kAsMapped = 0.05;
 /// Percent from which "no more than one storey off" is sure.
 constexpr double kWithinOne = 85;
 
@@ -59,6 +61,25 @@ std::string link_of(const std::string& id) {
   if (id.size() < 2 || id[1] == '-') return {};
   const std::string_view kind = id[0] == 'n' ? "node" : id[0] == 'w' ? "way" : "relation";
   return fmt::format("https://www.openstreetmap.org/{}/{}", kind, id.substr(1));
+}
+
+/// What a reason means of an object that is not in the model, without a full stop.
+std::string reported_words(const std::string& code, std::string meaning) {
+  if (const std::string_view words = consequence_words(code); !words.empty()) return std::string(words);
+  if (meaning.ends_with('.')) meaning.pop_back();
+  return meaning;
+}
+
+/// What to do about an object that is not in the model.
+std::string remedy_words(const std::string& state, const std::string& code) {
+  if (state != "reported")
+    return "To change it: if it is a house of its own, correct its outline in OpenStreetMap and build again.";
+  if (code == "OUTLINE_INCOMPLETE")
+    return "To change it: cut a larger piece out of the map, so that the whole house lies in it.";
+  if (code == "NODE_ONLY") return "To change it: draw its outline in OpenStreetMap; a point has no shape.";
+  if (code == "LIFECYCLE" || code == "UNDERGROUND")
+    return "To change it: if that is no longer so, correct its tags in OpenStreetMap and build again.";
+  return "To change it: correct it in OpenStreetMap and build again.";
 }
 
 /// The attributes of one building or body, asked for by name.
@@ -136,7 +157,7 @@ class PlainText {
       out_.lines.push_back(facade());
       add(simplified());
       add(outline());
-      out_.lines.push_back(to_change());
+      to_change();
     }
     return std::move(out_);
   }
@@ -175,21 +196,25 @@ class PlainText {
   std::string title() const {
     const std::string name = j_.value("name", ""), address = addresses().first;
     if (!name.empty()) return address.empty() ? name : name + ", " + address;
-    if (!address.empty()) return address;
     const std::string near = street();
+    // A number without a street says too little.
+    const bool number_alone = own_street().empty() && !j_.value("address", "").empty();
+    if (!address.empty()) return number_alone && !near.empty() ? near + " " + address : address;
     const std::string noun = use();
     return capitalised(noun.substr(0, noun.find(','))) +
            (near.empty() ? " without an address" : ", " + near + " (no address mapped)");
   }
 
+  std::string tag(const char* key) const { return j_.contains("tags") ? j_.at("tags").value(key, "") : std::string(); }
+  /// Of its address, as mapped.
+  std::string own_street() const {
+    const std::string street = tag("addr:street");
+    return street.empty() ? tag("addr:place") : street;
+  }
+
   /// Its own address, and those that doors and points in it add.
   std::pair<std::string, std::string> addresses() const {
-    const auto tag = [&](const char* key) {
-      return j_.contains("tags") && j_.at("tags").contains(key) ? j_.at("tags").value(key, "") : std::string();
-    };
-    std::string street = tag("addr:street");
-    if (street.empty()) street = tag("addr:place");
-    const std::string own = j_.value("address", ""), numbers = tag("addr:housenumber");
+    const std::string street = own_street(), own = j_.value("address", ""), numbers = tag("addr:housenumber");
     AddressList list(own, street, numbers);
     if (j_.contains("edges"))
       for (const Json& e : j_.at("edges"))
@@ -235,25 +260,32 @@ class PlainText {
   }
 
   void without_body() {
-    const std::string state = j_.value("state", ""), meaning = j_.value("meaning", "");
+    const std::string state = j_.value("state", ""), code = j_.value("code", "");
     if (state == "reported")
-      out_.lines.push_back("Not in the model: " + meaning);
+      out_.lines.push_back("Not in the model: " + reported_words(code, j_.value("meaning", "")) + ".");
     else if (state == "duplicate")
       out_.lines.push_back(
-          "Not in the model under this outline: the same house is drawn twice in the map, and the other drawing was "
-          "built.");
+          "Not in the model: the same house is drawn twice in the map, and the other drawing was built" +
+          other_drawing() + ".");
     else
-      out_.lines.push_back("No body of its own: other buildings of the map cover its outline, and they were built.");
-    add(std::string("What it is: ") + what_noun() + ".");
-    std::vector<std::string> notes = note_texts({"notice", "fallback", "reported"});
-    if (!notes.empty()) out_.lines.push_back("What happened: " + and_list(notes) + ".");
-    const std::string page = link_of(id_);
-    if (!page.empty())
       out_.lines.push_back(
-          state == "reported" && j_.value("code", "") == "OUTLINE_INCOMPLETE"
-              ? "To change it: cut a larger piece out of the map, so that the whole house lies in it. It is " + page +
-                    "."
-              : "To change it: mend it in OpenStreetMap (" + page + ") and build again.");
+          "Without a body of its own: other buildings of the map cover its outline, and they were built.");
+    add("What it is: " + what_noun() + ".");
+    const std::vector<std::string> notes = note_texts({"notice", "fallback", "reported"});
+    if (state == "reported" && !notes.empty())
+      out_.lines.push_back(fmt::format("What happened: {}.", fmt::join(notes, "; ")));
+    out_.lines.push_back(remedy_words(state, code));
+    if (const std::string page = link_of(id_); !page.empty()) out_.lines.push_back("Its page: " + page);
+  }
+
+  /// " (w400555844)": of whom it is a duplicate, which the note alone says.
+  std::string other_drawing() const {
+    for (const Json& note : j_.at("notes")) {
+      const std::string detail = note.value("detail", "");
+      if (note.value("code", "") == "NEAR_DUPLICATE" && detail.starts_with("of "))
+        return " (ask for " + detail.substr(3, detail.find(',') - 3) + ")";
+    }
+    return {};
   }
 
   std::string what_noun() const {
@@ -261,7 +293,7 @@ class PlainText {
     if (use.empty() || use == "yes") {
       const std::string rule = j_.contains("style") ? j_.at("style").value("rule", "") : "";
       return rule.empty() ? "a building; the map does not say what it is used for"
-                          : "a small building or the like; the map does not say what it is used for";
+                          : "a small structure; the map does not say what it is used for";
     }
     return with_article(use_words(use)) + (v_.given("use").empty() ? "" : ", " + v_.given("use"));
   }
@@ -345,7 +377,8 @@ class PlainText {
             "; worked out from the mapped storeys, at {:.1f} m each, {} ({})", v_.number("storey_height"),
             v_.is_known("storey_height") ? "as mapped" : "as usual for such buildings", v_.sureness("height"));
       else if (source == "implied" || source == "neighbours" || source == "geometry" || source == "preset")
-        line += fmt::format("; worked out from the storeys, so no surer than they are ({})", v_.sureness("height"));
+        line += fmt::format("; worked out from the storeys at {:.1f} m each, so no surer than they are ({})",
+                            v_.number("storey_height"), v_.sureness("height"));
       else
         line += fmt::format("; {} ({})", origin(source), v_.sureness("height"));
     }
@@ -397,7 +430,7 @@ class PlainText {
     else if (adapted)
       line += "; the map says that it is another shape than the usual ones";
     else
-      line += fmt::format(": {} ({})", roof_why(), v_.sureness("roof_shape"));
+      line += fmt::format("; {} ({})", roof_why(), v_.sureness("roof_shape"));
     std::vector<std::string> mapped;
     if (v_.is_known("roof_material")) mapped.push_back("its material");
     if (v_.is_known("roof_colour")) mapped.push_back("its colour");
@@ -441,28 +474,33 @@ class PlainText {
     if (!j_.contains("style")) return {};
     const Json& style = j_.at("style");
     const std::string when = built_when(), kind = substyle();
-    if (const std::string rule = style.value("rule", ""); !rule.empty()) {
-      // "building=toilets: a public toilet" → "a public toilet"; "12.2 m² without address: an outbuilding" stays.
-      const std::size_t colon = rule.find(": ");
-      const bool tag = colon != std::string::npos && rule.find('=') < colon;
-      return fmt::format("Style: none of a house, as it is taken for {}{}.",
-                         tag                          ? rule.substr(colon + 2)
-                         : colon == std::string::npos ? rule
-                                                      : rule.substr(colon + 2),
-                         tag || colon == std::string::npos ? "" : " (" + rule.substr(0, colon) + ")");
-    }
-    const std::string own = style.value("class", "");
-    const double p = style.at("probabilities").value(own, 0.0);
-    std::string line = fmt::format("Style: {} ({})", class_words(own), confidence_word(p));
+    if (const std::string rule = style.value("rule", ""); !rule.empty()) return no_house(rule);
+    const std::string own = style.value("class", ""),
+                      p = std::string(confidence_word(style.at("probabilities").value(own, 0.0)));
+    const bool other = own == "other";
+    std::string line = "Style: ";
+    if (other)
+      line += kind.empty() ? fmt::format("none of the usual houses ({})", p) : fmt::format("{} ({})", kind, p);
+    else
+      line += fmt::format("{} ({})", class_words(own), p);
     if (!when.empty()) line += ", built " + when;
-    if (!kind.empty())
-      line += fmt::format("; it looks like: {} ({})", kind, confidence_word(v_.confidence("substyle")));
+    if (!other && !kind.empty()) line += fmt::format("; drawn as: {} ({})", kind, v_.sureness("substyle"));
     line += ".";
     const std::vector<std::string> reasons = strongest_reasons(style, kMostReasons);
     if (!reasons.empty())
-      line += fmt::format(" Why {}, and not {}: {}.", class_words(own), class_words(style.value("second", "")),
-                          and_list(reasons));
+      line += fmt::format(" Why {}, and not {}: {}.", other ? "this" : class_words(own),
+                          class_words(style.value("second", "")), and_list(reasons));
     return line;
+  }
+
+  /// Of what a rule takes out: "building=toilets: a public toilet", "12.2 m² without an address: an outbuilding".
+  static std::string no_house(const std::string& rule) {
+    const std::size_t colon = rule.find(": ");
+    const std::string what = colon == std::string::npos ? rule : rule.substr(colon + 2);
+    const std::string because =
+        colon == std::string::npos || rule.find('=') < colon ? "" : " (" + rule.substr(0, colon) + ")";
+    const bool thing = what.starts_with("a ") || what.starts_with("an ");
+    return fmt::format("Style: none of a house, as it is {}{}{}.", thing ? "taken for " : "", what, because);
   }
 
   // ---- where it stands
@@ -489,7 +527,8 @@ class PlainText {
       }
     if (fronts.size() > kMostStreets) fronts.resize(kMostStreets);
     if (!fronts.empty()) line += "; its front faces " + and_list(fronts);
-    line += neighbours.empty() ? "; it shares no wall with a neighbour"
+    const bool alone = s.value("position", "") == "free_standing";
+    line += neighbours.empty() ? (alone ? "" : "; it shares no wall with a neighbour")
                                : fmt::format("; it shares walls with {}",
                                              count_of(static_cast<double>(neighbours.size()), "neighbour"));
     if (const std::string yard = courtyard(); !yard.empty())
@@ -547,7 +586,8 @@ class PlainText {
       line += has_stage("facades", "no rule") ? "plain walls; there are no rules for the windows of such buildings"
                                               : "walls without windows or doors";
     } else {
-      line += count_of(windows, "window") + " and " + count_of(doors, "door");
+      line += (windows == 0 ? "no windows" : count_of(windows, "window")) + " and " +
+              (doors == 0 ? "no door" : count_of(doors, "door"));
       std::vector<std::string> more;
       for (const auto& [kind, count] : things)
         more.push_back(count_of(count, element_words(kind).one, element_words(kind).many));
@@ -585,17 +625,35 @@ class PlainText {
     return out;
   }
 
-  std::string simplified() const {
+  std::vector<std::string> simplifications() const {
     std::vector<std::string> texts = note_texts({"fallback"});
+    bool closed = false;
     for (const Json& body : j_.at("bodies"))
       if (body.contains("fallbacks"))
         for (const Json& code : body.at("fallbacks")) {
           const std::string text(consequence_words(code.get<std::string>()));
+          closed = closed || code == "FACADE_FAILED";
           if (!text.empty() && text != " " && std::find(texts.begin(), texts.end(), text) == texts.end() &&
               texts.size() < kMostNotes)
             texts.push_back(text);
         }
-    return texts.empty() ? "" : "Simplified: " + and_list(texts) + ".";
+    // Walls that stay closed have no windows to miss.
+    if (closed) std::erase(texts, std::string(consequence_words("OPENING_LEFT_OUT")));
+    return texts;
+  }
+
+  std::string simplified() const {
+    const std::vector<std::string> texts = simplifications();
+    return texts.empty() ? "" : fmt::format("Simplified: {}.", fmt::join(texts, "; "));
+  }
+
+  /// "its walls meet those of its neighbours and its corners are square"
+  static std::string why_moved(const Json& repair) {
+    std::vector<std::string> why;
+    if (repair.value("shared_walls", 0.0) > 0) why.push_back("its walls meet those of its neighbours");
+    if (repair.contains("direction")) why.push_back("its corners are square");
+    if (repair.value("overlaps_resolved", 0.0) > 0) why.push_back("it overlaps nobody");
+    return why.empty() ? "" : ", so that " + and_list(why);
   }
 
   std::string outline() const {
@@ -606,18 +664,19 @@ class PlainText {
     if (j_.contains("repair")) {
       const Json& r = j_.at("repair");
       const double moved = r.value("moved", 0.0), all = r.value("vertices", 0.0), most = r.value("max_shift", 0.0);
-      if (moved > 0 && most >= 0.005) {
-        std::vector<std::string> why;
-        if (r.value("shared_walls", 0.0) > 0) why.push_back("its walls meet those of its neighbours");
-        if (r.contains("direction")) why.push_back("its corners are square");
-        if (r.value("overlaps_resolved", 0.0) > 0) why.push_back("it overlaps nobody");
+      if (moved > 0 && most < kAsMapped)
+        pieces.push_back(fmt::format("as mapped, within {:.0f} cm", std::max(1.0, std::ceil(100 * most))));
+      else if (moved > 0)
         pieces.push_back(
-            fmt::format("{:.0f} of its {:.0f} corners were moved by {} at most{}", moved, all,
+            fmt::format("{} were moved by {} at most{}",
+                        moved == all ? fmt::format("all its {:.0f} corners", all)
+                                     : fmt::format("{:.0f} of its {:.0f} corners", moved, all),
                         most < kInCentimetres ? fmt::format("{:.0f} cm", 100 * most) : fmt::format("{:.1f} m", most),
-                        why.empty() ? "" : ", so that " + and_list(why)));
-      }
+                        why_moved(r)));
     }
-    for (std::string& text : note_texts({"notice"})) pieces.push_back(std::move(text));
+    const std::vector<std::string> told = simplifications();
+    for (std::string& text : note_texts({"notice"}))
+      if (std::find(told.begin(), told.end(), text) == told.end()) pieces.push_back(std::move(text));
     if (pieces.empty()) return "Outline: as mapped; nothing had to be mended.";
     return fmt::format("Outline: {}.", fmt::join(pieces, "; "));
   }
@@ -628,7 +687,7 @@ class PlainText {
     const char *attribute, *tag, *words;
   };
 
-  std::string to_change() const {
+  void to_change() {
     constexpr Changeable kAll[] = {{"storeys", "building:levels", "number of storeys"},
                                    {"roof_shape", "roof:shape", "shape of its roof"},
                                    {"height", "height", "height"}};
@@ -639,19 +698,20 @@ class PlainText {
         least = &c;
     const std::string page = link_of(id_);
     const std::string where = page.empty() ? "in OpenStreetMap" : "at " + page;
-    if (!least)
-      return fmt::format(
+    if (!least) {
+      out_.lines.push_back(fmt::format(
           "To change it: storeys, height and roof are mapped; if one is wrong, correct its tag {} and build again.",
-          where);
-    const std::string value = std::string_view(least->attribute) == "roof_shape"
-                                  ? fmt::format("\"{}\"", v_.text("roof_shape"))
-                              : std::string_view(least->attribute) == "height" ? whole(v_.number("height"))
-                                                                               : as_mapped(v_.number("storeys"));
-    return fmt::format(
-        "To change it: least is known of the {}. Add the tag {} {}, or build with --overrides FILE.toml that has the "
-        "line "
-        "{}.{} = {} with the true value instead.",
-        least->words, least->tag, where, id_, least->attribute, value);
+          where));
+      return;
+    }
+    const std::string_view attribute = least->attribute;
+    const std::string value = attribute == "roof_shape" ? fmt::format("\"{}\"", v_.text("roof_shape"))
+                              : attribute == "height"   ? whole(v_.number("height"))
+                                                        : as_mapped(v_.number("storeys"));
+    out_.lines.push_back(fmt::format("To change it: least is known of the {}. Add the tag {} {} and build again;",
+                                     least->words, least->tag, where));
+    out_.lines.push_back(fmt::format("or order it: {}.{} = {} (write the true value) in a file for build --overrides.",
+                                     id_, attribute, value));
   }
 
   const Json& j_;
@@ -663,29 +723,19 @@ class PlainText {
 /// Of a row of report.json.
 PlainExplanation row_text(const Json& row) {
   PlainExplanation out;
-  const std::string id = row.value("id", ""), state = row.value("state", ""), code = row.value("code", "");
-  out.title = row.value("kind", "") == "building" ? "A building that is not in the model"
-                                                  : "A part of a building that is not in the model";
-  const std::string page = link_of(id), related = row.value("related", "");
-  const std::string other = related.empty() ? "another object of the map" : "another object of the map, " + related;
-  if (state == "duplicate") {
-    out.lines.push_back("Why: it is drawn twice in the map. " + capitalised(other) +
-                        " is the same house, and that was looked at instead.");
-  } else if (state == "represented") {
-    out.title = row.value("kind", "") == "building" ? "A building without a body of its own"
-                                                    : "A part without a body of its own";
-    out.lines.push_back("Why: " + other + " stands for it in the model.");
-  } else {
-    out.lines.push_back("Why: " + row.value("meaning", ""));
-  }
-  if (!related.empty()) out.lines.push_back("What was built instead: ask for " + related + ".");
-  if (code == "OUTLINE_INCOMPLETE")
-    out.lines.push_back("To change it: cut a larger piece out of the map, so that the whole house lies in it.");
-  else if (code == "NODE_ONLY")
-    out.lines.push_back("To change it: draw its outline in OpenStreetMap; a point has no shape.");
-  else if (state == "reported")
-    out.lines.push_back("To change it: correct it in OpenStreetMap and build again.");
-  if (!page.empty()) out.lines.push_back("Its page: " + page + ".");
+  const std::string id = row.value("id", ""), state = row.value("state", ""), code = row.value("code", ""),
+                    related = row.value("related", "");
+  const std::string what = row.value("kind", "") == "building" ? "A building" : "A part of a building";
+  const std::string ask = related.empty() ? "" : " (ask for " + related + ")";
+  out.title = what + (state == "represented" ? " without a body of its own" : " that is not in the model");
+  if (state == "duplicate")
+    out.lines.push_back("Why: it is drawn twice in the map, and the other drawing counts" + ask + ".");
+  else if (state == "represented")
+    out.lines.push_back("Why: others of the map stand for it" + ask + ".");
+  else
+    out.lines.push_back("Why: " + reported_words(code, row.value("meaning", "")) + ".");
+  out.lines.push_back(remedy_words(state, code));
+  if (const std::string page = link_of(id); !page.empty()) out.lines.push_back("Its page: " + page);
   return out;
 }
 

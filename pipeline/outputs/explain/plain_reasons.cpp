@@ -146,6 +146,14 @@ std::string rounded(double value) {
   return text;
 }
 
+/// Measures that nobody sees in the street.
+bool holds_little(std::string_view feature) {
+  constexpr std::string_view kLittle[] = {"around_corners", "around_elongation", "around_spread", "row_area",
+                                          "row_breadth",    "row_length",        "row_fill",      "compactness",
+                                          "breadth",        "tag_number"};
+  return std::find(std::begin(kLittle), std::end(kLittle), feature) != std::end(kLittle);
+}
+
 bool is_around(std::string_view feature) { return feature.starts_with("around_") || feature.starts_with("town_"); }
 
 }  // namespace
@@ -186,6 +194,9 @@ std::vector<std::string> strongest_reasons(const Json& style, std::size_t most) 
   std::stable_sort(terms.begin(), terms.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<std::string> out;
   int around = 0;
+  // What says little to a reader, behind what says more.
+  std::stable_partition(terms.begin(), terms.end(),
+                        [](const auto& t) { return !holds_little(t.second->value("feature", "")); });
   for (const auto& [weight, term] : terms) {
     const std::string feature = term->value("feature", "");
     if (out.size() >= most) break;

@@ -165,6 +165,19 @@ ElementWords element_words(std::string_view kind) {
 
 std::string_view consequence_words(std::string_view code) {
   constexpr Words kWords[] = {
+      {"NODE_ONLY", "it is mapped as a point, which has no outline to build from"},
+      {"OPEN_WAY", "its outline is not closed in the map"},
+      {"RING_BROKEN", "the pieces of its outline do not close in the map"},
+      {"OUTLINE_INCOMPLETE", "a piece of its outline lies outside of the map extract"},
+      {"TOO_FEW_POINTS", "its outline has fewer than three corners in the map"},
+      {"ZERO_AREA", "its outline encloses nothing in the map"},
+      {"INVALID_LOCATION", "a corner of it lies nowhere on Earth"},
+      {"TOO_LARGE", "its outline is wider than 10 km, as no building is"},
+      {"UNDERGROUND", "it lies below the ground, as mapped"},
+      {"LIFECYCLE", "it is planned, under construction, a ruin or gone, as mapped"},
+      {"RELATION_TYPE", "it is mapped as a collection of others and has no outline of its own"},
+      {"NO_SOLID", "no sound body could be made of its outline, not even a block"},
+      {"UNACCOUNTED", "the program lost it, which is a mistake of the program: please report it"},
       {"ROOF_SHAPE_ADAPTED", "its outline does not take the roof that was meant, so a similar one was built"},
       {"ROOF_SHAPE_UNKNOWN", "the roof shape that is mapped is none that the program knows, so the roof is flat"},
       {"ROOF_FAILED", "no sound roof could be built, so it is flat"},
@@ -185,7 +198,7 @@ std::string_view consequence_words(std::string_view code) {
       {"VALUE_CLAMPED", "a tag has an impossible value, which was limited"},
       {"DUPLICATE_KEY", "a tag stands twice in the map, and the first one counts"},
       {"VALUES_CONFLICT", "two tags contradict each other, and the stronger one counts"},
-      {"MEMBERS_MISSING", "a piece of its outline lies outside of the map extract"},
+      {"MEMBERS_MISSING", "pieces of its outline lie outside of the map extract"},
       {"RELATION_REPAIRED", "its outline had errors in the map and was pieced together"},
       {"DUPLICATE_POINTS", "double points were removed"},
       {"SPIKE_REMOVED", "a spike was removed"},

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <filesystem>
+#include <fstream>
 
+#include "pipeline/base/error.h"
 #include "pipeline/outputs/explain/find_places.h"
 #include "pipeline/outputs/explain/place_words.h"
 
@@ -32,8 +35,8 @@ TEST(Places, HostileTextsStayInTheirField) {
 }
 
 TEST(Places, WhatIsNoLineIsNotRead) {
-  for (const char* line : {"", "w1", "w1\t15_1_2\t1\t2\t3\tA", "w1\t15_1_2\t1\t2\t3\tA\tB\tC", "w1\t15_1_2\tx\t2\t3\tA\tB",
-                           "\t15_1_2\t1\t2\t3\tA\tB"})
+  for (const char* line : {"", "w1", "w1\t15_1_2\t1\t2\t3\tA", "w1\t15_1_2\t1\t2\t3\tA\tB\tC",
+                           "w1\t15_1_2\tx\t2\t3\tA\tB", "\t15_1_2\t1\t2\t3\tA\tB"})
     EXPECT_FALSE(read_place(line)) << line;
   EXPECT_TRUE(read_place("w1\t15_1_2\t1\t2\t3\t\t"));
 }
@@ -79,26 +82,44 @@ std::string line(const std::string& id, const std::string& addresses, const std:
   return place_line({id, "15_1_2", 13, 52, top, addresses, name});
 }
 
+/// A build of two areas.
 class FindPlaces : public ::testing::Test {
  protected:
+  void SetUp() override {
+    folder_ = ::testing::TempDir() + "find_places";
+    std::filesystem::remove_all(folder_);
+    write("build.json", R"({"areas":{"11/5/6":{},"11/5/7":{}}})");
+    for (const auto& [area, places] : {std::pair("areas/11/5/6/", &files_[0]), {"areas/11/5/7/", &files_[1]}}) {
+      write(std::string(area) + "build.json", "{}");
+      write(std::string(area) + "explain/index.txt", "");
+      write(std::string(area) + "explain/places.tsv", *places);
+    }
+  }
+  void write(const std::string& name, const std::string& bytes) {
+    const std::filesystem::path path = folder_ + "/" + name;
+    std::filesystem::create_directories(path.parent_path());
+    std::ofstream(path, std::ios::binary) << bytes;
+  }
+  FoundPlaces find(std::string_view text) const { return find_places(folder_, text); }
   std::vector<std::string> ids(std::string_view text) const {
     std::vector<std::string> out;
-    for (const Place& place : places_like(files_, text).places) out.push_back(place.id);
+    for (const Place& place : find(text).places) out.push_back(place.id);
     return out;
   }
+  std::string folder_;
   std::array<std::string, 2> files_ = {
       line("w1", "Arkonaplatz 5, 10435 Berlin") + line("w2", "Arkonaplatz 5a, 10435 Berlin") +
           line("w3", "Arkonaplatz 7-11, 10435 Berlin") + line("w4", "Zionskirchplatz, 10119 Berlin", "Zionskirche") +
-          line("w5", "Zionskirchstraße 12;14, 10119 Berlin; Arkonaplatz 20") + line("w6", "Straße des 17. Juni 5, 10557 Berlin") +
-          line("w7", "", "") + line("w8", "Schönhauser Allee 5"),
+          line("w5", "Zionskirchstraße 12;14, 10119 Berlin; Arkonaplatz 20") +
+          line("w6", "Straße des 17. Juni 5, 10557 Berlin") + line("w7", "", "") + line("w8", "Schönhauser Allee 5"),
       line("w11", "Schönhauser Allee 5, 14467 Potsdam") + line("w12", "улица Ленина 14, Волгоград") +
           line("w13", "İstiklâl Caddesi 3") + line("w14", "Mánesova 1234/45, Praha") + line("w15", "Hof 1", "", 0) +
           line("w16", "Hof 1") + line("w17", "Hof 2", "", 0) + line("r9", "Pfarrhaus", "Gemeindehaus der Zionskirche")};
 };
 
 TEST_F(FindPlaces, WholeAddressesInManyForms) {
-  for (const char* text : {"Arkonaplatz 5", "arkonapl. 5", "5 Arkonaplatz", "ARKONAPLATZ 5, 10435 Berlin", "Berlin, Arkonaplatz 5",
-                           "Arkonaplatz 5 Berlin", "Arkona Platz 5"})
+  for (const char* text : {"Arkonaplatz 5", "arkonapl. 5", "5 Arkonaplatz", "ARKONAPLATZ 5, 10435 Berlin",
+                           "Berlin, Arkonaplatz 5", "Arkonaplatz 5 Berlin", "Arkona Platz 5"})
     EXPECT_THAT(ids(text), ElementsAre("w1")) << text;
   for (const char* text : {"Zionskirchstr. 14", "zionskirchstrasse 14", "Zionskirch-Straße 14", "Arkonaplatz 20"})
     EXPECT_THAT(ids(text), ElementsAre("w5")) << text;
@@ -117,8 +138,8 @@ TEST_F(FindPlaces, TheTownTellsApart) {
 }
 
 TEST_F(FindPlaces, ANumberBesideIsToldAsOne) {
-  EXPECT_TRUE(places_like(files_, "Arkonaplatz 5").exact);
-  const FoundPlaces range = places_like(files_, "Arkonaplatz 9");
+  EXPECT_TRUE(find("Arkonaplatz 5").exact);
+  const FoundPlaces range = find("Arkonaplatz 9");
   ASSERT_EQ(range.places.size(), 1u);
   EXPECT_EQ(range.places[0].id, "w3");
   EXPECT_FALSE(range.exact);
@@ -138,7 +159,7 @@ TEST_F(FindPlaces, BuildingsWithABodyFirst) {
 }
 
 TEST_F(FindPlaces, WhatMayHaveBeenMeant) {
-  const auto nearest = [&](std::string_view text) { return places_like(files_, text).nearest; };
+  const auto nearest = [&](std::string_view text) { return find(text).nearest; };
   EXPECT_THAT(nearest("Arkonplaz 5"), ::testing::Contains("Arkonaplatz 5"));
   EXPECT_THAT(nearest("Zionskirch"), IsEmpty()) << "the beginning of a word finds";
   EXPECT_THAT(ids("Zionskirch 14"), ElementsAre("w5"));
@@ -146,6 +167,35 @@ TEST_F(FindPlaces, WhatMayHaveBeenMeant) {
   EXPECT_THAT(nearest("Xylophonweg 1"), IsEmpty());
   EXPECT_THAT(nearest(""), IsEmpty());
   EXPECT_THAT(ids(""), IsEmpty());
+}
+
+TEST_F(FindPlaces, FilesThatAreGoneOrDamaged) {
+  const auto error = [&]() -> std::string {
+    try {
+      find("Arkonaplatz 5");
+    } catch (const base::InputError& e) {
+      return e.what();
+    } catch (const base::UsageError& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  write("areas/11/5/7/explain/places.tsv", "w1 no tabs\n");
+  EXPECT_THAT(error(), ::testing::HasSubstr("areas/11/5/7/explain/places.tsv: this line cannot be read: w1 no tabs"));
+  std::filesystem::remove(folder_ + "/areas/11/5/7/explain/places.tsv");
+  EXPECT_THAT(error(), ::testing::HasSubstr("an older program made this build"));
+  EXPECT_THAT(error(), ::testing::HasSubstr("w123"));
+  write("areas/11/5/7/build.json", R"({"configuration":{"explain":false}})");
+  std::filesystem::remove(folder_ + "/areas/11/5/7/explain/index.txt");
+  EXPECT_THAT(error(), ::testing::HasSubstr("--no-explain"));
+  std::filesystem::remove(folder_ + "/build.json");
+  EXPECT_THAT(error(), ::testing::HasSubstr("is no build"));
+}
+
+TEST_F(FindPlaces, ANumberWithoutAStreetTakesTheNextOne) {
+  write("areas/11/5/6/explain/places.tsv", line("w1", "1; Lange Straße 2; 3"));
+  for (const char* text : {"Lange Str. 1", "Lange Str. 2", "Lange Str. 3"})
+    EXPECT_THAT(ids(text), ElementsAre("w1")) << text;
 }
 
 }  // namespace
