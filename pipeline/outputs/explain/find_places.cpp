@@ -109,6 +109,7 @@ class Search {
     const std::size_t limit = std::max<std::size_t>(2, key.size() / 3);
     const auto far = [&](const std::string& there) {
       if (there.empty() || key.empty()) return limit + 1;
+      if (there == key) return std::size_t{0};
       if (there.starts_with(key) && key.size() >= kLeastBeginning) return std::size_t{1};
       return edits(key, there, limit);
     };

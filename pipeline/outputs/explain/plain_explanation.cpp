@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "pipeline/outputs/explain/place_words.h"
 #include "pipeline/outputs/explain/places.h"
 #include "pipeline/outputs/explain/plain_reasons.h"
 #include "pipeline/outputs/explain/plain_words.h"
@@ -25,6 +26,8 @@ constexpr double kInCentimetres = 0.995;
 constexpr double kAsMapped = 0.05;
 /// Percent from which "no more than one storey off" is sure.
 constexpr double kWithinOne = 85;
+/// The fourth digit of an area says nothing.
+constexpr double kThreeDigits = 1000;
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
@@ -56,6 +59,15 @@ double number_behind(std::string_view text, std::string_view before) {
   if (at != std::string_view::npos) std::from_chars(text.data() + at + before.size(), text.data() + text.size(), value);
   return value;
 }
+
+/// 13334 → "13300".
+std::string three_digits(double value) {
+  const double step = std::pow(10, std::floor(std::log10(value)) - 2);
+  return fmt::format("{:.0f}", std::round(value / step) * step);
+}
+
+/// m, of one storey: "2.8", "7".
+std::string storey_height(double value) { return as_mapped(std::round(10 * value) / 10); }
 
 std::string link_of(const std::string& id) {
   if (id.size() < 2 || id[1] == '-') return {};
@@ -173,11 +185,7 @@ class PlainText {
 
   std::string use() const {
     const std::string use = v_.text("use");
-    if (use.empty() || use == "yes") {
-      // A rule may know more: "amenity=parking: a garage".
-      return "building";
-    }
-    return use_words(use);
+    return use_words(use.empty() ? "yes" : use);
   }
 
   /// Of its front, else of any wall that looks at a street; empty for none.
@@ -197,9 +205,14 @@ class PlainText {
     const std::string name = j_.value("name", ""), address = addresses().first;
     if (!name.empty()) return address.empty() ? name : name + ", " + address;
     const std::string near = street();
-    // A number without a street says too little.
-    const bool number_alone = own_street().empty() && !j_.value("address", "").empty();
-    if (!address.empty()) return number_alone && !near.empty() ? near + " " + address : address;
+    if (!address.empty()) {
+      if (!own_street().empty() || j_.value("address", "").empty()) return address;
+      const PlaceAddresses all = place_addresses(address + "; " + addresses().second);
+      // A number without a street says too little: the street of its other doors, else that which it faces.
+      const bool of_doors = !all.all.front().street.empty();
+      const std::string from = of_doors ? all.all.front().shown_street : near;
+      return from.empty() || address.starts_with(from) ? address : from + " " + address;
+    }
     const std::string noun = use();
     return capitalised(noun.substr(0, noun.find(','))) +
            (near.empty() ? " without an address" : ", " + near + " (no address mapped)");
@@ -320,10 +333,32 @@ class PlainText {
                        mapped ? "mapped there" : std::string(v_.sureness("ground_floor_use")));
   }
 
+  /// The addresses of its doors that its own does not name: "Granseer Straße 7 and 9, Lange Straße 2".
+  std::string other_doors() const {
+    const auto [own, doors] = addresses();
+    const PlaceAddresses named = place_addresses(own);
+    std::vector<std::pair<std::string, std::vector<std::string>>> by_street;
+    for (const PlaceAddress& door : place_addresses(own + "; " + doors).all) {
+      const auto same = [&](const PlaceAddress& a) {
+        return a.street == door.street && std::any_of(a.numbers.begin(), a.numbers.end(), [&](const std::string& n) {
+                 return door.numbers.empty() || match_numbers(door.numbers[0], n) != NumberMatch::none;
+               });
+      };
+      if (door.numbers.empty() || std::any_of(named.all.begin(), named.all.end(), same)) continue;
+      if (by_street.empty() || by_street.back().first != door.shown_street)
+        by_street.emplace_back(door.shown_street, std::vector<std::string>());
+      by_street.back().second.push_back(door.numbers[0]);
+    }
+    std::vector<std::string> texts;
+    for (const auto& [street, numbers] : by_street)
+      texts.push_back((street.empty() ? "number" : street) + " " + and_list(numbers));
+    return fmt::format("{}", fmt::join(texts, ", "));
+  }
+
   std::string what() const {
     std::string line = "What it is: " + what_noun() + ground_floor();
     if (has_parts()) line += fmt::format("; modelled in {} parts", j_.at("bodies").size());
-    if (const std::string others = addresses().second; !others.empty()) line += "; also " + others;
+    if (const std::string others = other_doors(); !others.empty()) line += "; also " + others;
     return line + ".";
   }
 
@@ -374,11 +409,11 @@ class PlainText {
         line += "; that of its highest part";
       else if (v_.is_known("storeys"))
         line += fmt::format(
-            "; worked out from the mapped storeys, at {:.1f} m each, {} ({})", v_.number("storey_height"),
+            "; worked out from the mapped storeys, at {} m each, {} ({})", storey_height(v_.number("storey_height")),
             v_.is_known("storey_height") ? "as mapped" : "as usual for such buildings", v_.sureness("height"));
       else if (source == "implied" || source == "neighbours" || source == "geometry" || source == "preset")
-        line += fmt::format("; worked out from the storeys at {:.1f} m each, so no surer than they are ({})",
-                            v_.number("storey_height"), v_.sureness("height"));
+        line += fmt::format("; worked out from the storeys at about {} m each, so no surer than they are ({})",
+                            storey_height(v_.number("storey_height")), v_.sureness("height"));
       else
         line += fmt::format("; {} ({})", origin(source), v_.sureness("height"));
     }
@@ -551,8 +586,12 @@ class PlainText {
       if (at == std::string::npos) return {};
       std::string yards = text.substr(at, text.find(';', at) - at);
       if (yards.find("courtyard of") == std::string::npos || yards.find(".y") != std::string::npos) return {};
-      for (std::size_t m = yards.find(" m2"); m != std::string::npos; m = yards.find(" m2", m + 1))
+      for (std::size_t m = yards.find(" m2"); m != std::string::npos; m = yards.find(" m2", m + 1)) {
         yards.replace(m, 3, " m²");
+        const std::size_t number = yards.rfind(' ', m - 1) + 1;
+        const double area = number_behind(yards.substr(number, m - number), "");
+        if (area >= kThreeDigits) yards.replace(number, m - number, three_digits(area));
+      }
       return "it " + yards;
     }
     return {};

@@ -100,8 +100,10 @@ TEST(PlainExplanation, TellsAHouseInTenLines) {
   EXPECT_THAT(text, HasSubstr("a residential building, as mapped"));
   EXPECT_THAT(text, HasSubstr("also Lange Straße 12"));
   EXPECT_THAT(text, HasSubstr("Storeys: 6, as mapped."));
-  EXPECT_THAT(text,
-              HasSubstr("about 25 m to the top of the roof, 21 m to the eaves; worked out from the mapped storeys"));
+  EXPECT_THAT(
+      text,
+      HasSubstr("about 25 m to the top of the roof, 21 m to the eaves; worked out from the mapped storeys, at 3.6 m "
+                "each, as usual for such buildings (likely)."));
   EXPECT_THAT(text, HasSubstr("Berlin roof (steep to the street, low to the yard); judged"));
   EXPECT_THAT(text,
               HasSubstr("a Gründerzeit house (sure), built 1840 to 1918 (sure); drawn as: front house of the Berlin "
@@ -207,7 +209,17 @@ TEST(PlainExplanation, ATitleIsTheNameTheAddressOrTheStreet) {
   j["edges"][1]["points"] = Json::array({{{"id", "n2"}, {"house_number", "12"}, {"street", "Lange Straße"}}});
   EXPECT_EQ(plain_explanation(j.dump()).title, "Lange Straße 12");
   j["address"] = "1", j["tags"]["addr:housenumber"] = "1";
-  EXPECT_EQ(plain_explanation(j.dump()).title, "Arkonaplatz 1");
+  EXPECT_EQ(plain_explanation(j.dump()).title, "Lange Straße 1") << "the street of its other door";
+  j["edges"][1].erase("points");
+  EXPECT_EQ(plain_explanation(j.dump()).title, "Arkonaplatz 1") << "the street that it faces";
+}
+
+TEST(PlainExplanation, OtherDoorsAreToldOnce) {
+  Json j = house();
+  j["address"] = "Arkonaplatz 5/6", j["tags"]["addr:housenumber"] = "5/6";
+  for (const char* number : {"5", "6", "9", "11"})
+    j["edges"][0]["points"].push_back({{"id", "n3"}, {"house_number", number}, {"street", "Arkonaplatz"}});
+  EXPECT_THAT(text_of(j), HasSubstr("; also Arkonaplatz 9 and 11, Lange Straße 12."));
 }
 
 TEST(PlainExplanation, PartsAndDuplicatesAreToldFirst) {
