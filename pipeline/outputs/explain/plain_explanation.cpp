@@ -492,23 +492,28 @@ class PlainText {
     return note;
   }
 
-  /// "1840 to 1918 (likely)", "1905, as mapped".
-  std::string built_when() const {
+  /// ", built 1840 to 1918 (likely)", ", built 1905, as mapped"; of two answers that contradict each other neither.
+  std::string built_when(const std::string& style_class) const {
     const std::string date = v_.text("construction_date");
     if (v_.is_known("construction_date") && !date.empty()) {
       const std::size_t dots = date.find("..");
-      return (dots == std::string::npos ? date : date.substr(0, dots) + " to " + date.substr(dots + 2)) + ", " +
-             v_.given("construction_date");
+      const std::string years =
+          dots == std::string::npos ? date : date.substr(0, dots) + " to " + date.substr(dots + 2);
+      return ", built " + years + ", " + v_.given("construction_date");
     }
-    const std::string_view era = era_words(v_.text("era"));
-    if (era.empty()) return {};
-    return fmt::format("{} ({})", era, v_.sureness("era"));
+    const std::string era = v_.text("era");
+    const bool old_class = style_class == "gruenderzeit" || style_class == "tenement";
+    const bool old_era = era == "pre1840" || era == "1840_1918";
+    if (era_words(era).empty()) return {};
+    if ((old_class && era != "1840_1918") || (style_class == "modern" && old_era))
+      return "; when it was built is not clear";
+    return fmt::format(", built {} ({})", era_words(era), v_.sureness("era"));
   }
 
   std::string style() const {
     if (!j_.contains("style")) return {};
     const Json& style = j_.at("style");
-    const std::string when = built_when(), kind = substyle();
+    const std::string kind = substyle();
     if (const std::string rule = style.value("rule", ""); !rule.empty()) return no_house(rule);
     const std::string own = style.value("class", ""),
                       p = std::string(confidence_word(style.at("probabilities").value(own, 0.0)));
@@ -518,7 +523,7 @@ class PlainText {
       line += kind.empty() ? fmt::format("none of the usual houses ({})", p) : fmt::format("{} ({})", kind, p);
     else
       line += fmt::format("{} ({})", class_words(own), p);
-    if (!when.empty()) line += ", built " + when;
+    line += built_when(own);
     if (!other && !kind.empty()) line += fmt::format("; drawn as: {} ({})", kind, v_.sureness("substyle"));
     line += ".";
     const std::vector<std::string> reasons = strongest_reasons(style, kMostReasons);

@@ -113,7 +113,7 @@ std::string roof_words(std::string_view shape) {
 
 std::string_view position_words(std::string_view position) {
   constexpr Words kWords[] = {
-      {"free_standing", "it stands free"},
+      {"free_standing", "on its own"},
       {"end_of_row", "at the end of a row"},
       {"mid_row", "within a row of houses"},
       {"corner_house", "at a street corner"},

@@ -214,6 +214,14 @@ TEST(PlainExplanation, ATitleIsTheNameTheAddressOrTheStreet) {
   EXPECT_EQ(plain_explanation(j.dump()).title, "Arkonaplatz 1") << "the street that it faces";
 }
 
+TEST(PlainExplanation, AnEraThatContradictsTheStyleIsNotTold) {
+  Json j = house();
+  value_of(j, "era")["value"] = "post1945";
+  EXPECT_THAT(text_of(j), HasSubstr("a Gründerzeit house (sure); when it was built is not clear; drawn as"));
+  j["attributes"].push_back(attribute("construction_date", "1905", "tag", 0.95, "tagged"));
+  EXPECT_THAT(text_of(j), HasSubstr("a Gründerzeit house (sure), built 1905, as mapped; drawn as"));
+}
+
 TEST(PlainExplanation, OtherDoorsAreToldOnce) {
   Json j = house();
   j["address"] = "Arkonaplatz 5/6", j["tags"]["addr:housenumber"] = "5/6";
