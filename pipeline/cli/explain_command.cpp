@@ -15,6 +15,8 @@
 #include "pipeline/cli/explain_chip.h"
 #include "pipeline/cli/explain_style.h"
 #include "pipeline/cli/terminal_text.h"
+#include "pipeline/outputs/explain/find_places.h"
+#include "pipeline/outputs/explain/plain_explanation.h"
 #include "pipeline/settings/command_line.h"
 
 namespace blockrand::cli {
@@ -338,29 +340,54 @@ std::string text_of(const Json& j, const outputs::FoundExplanation& found, const
 
 }  // namespace
 
+namespace {
+
+[[noreturn]] void damaged_explanation(const outputs::FoundExplanation& found, const std::exception& error) {
+  throw base::InputError("explain/", found.explained.text(), std::string("the explanation is damaged: ") + error.what(),
+                         "Build again; 'blockrand validate' lists all damage");
+}
+
+}  // namespace
+
 std::string explanation_text(const outputs::FoundExplanation& found, const std::string& body, bool edges, bool style) {
   try {
     Json j = Json::parse(found.json);
     make_printable(j);
     return text_of(j, found, body, edges, style);
   } catch (const Json::exception& error) {
-    throw base::InputError("explain/", found.explained.text(),
-                           std::string("the explanation is damaged: ") + error.what(),
-                           "Build again; 'blockrand validate' lists all damage");
+    damaged_explanation(found, error);
   }
+}
+
+std::string plain_text(const outputs::FoundExplanation& found) {
+  outputs::PlainExplanation plain;
+  try {
+    plain = outputs::plain_explanation(found.json, found.asked.text());
+  } catch (const std::exception& error) {
+    damaged_explanation(found, error);
+  }
+  std::string text = wrapped(printable(plain.title), 0) + "\n\n";
+  for (const std::string& line : plain.lines) text += "  " + wrapped(printable(line), 4) + "\n";
+  return text;
 }
 
 settings::CommandText explain_text() {
   return {.name = "explain",
           .summary = "why one building looks as it does",
-          .usage = "FOLDER ID [options]",
+          .usage = "FOLDER ID|ADDRESS [options]",
           .description =
-              "Tells everything that a build knows of one building or building part: its style and what spoke for it, "
-              "each value with its source, how "
-              "sure it is and what else was considered, what each stage did with it, what fell back and why, and the "
-              "files it stands in. An object that is not in the model is explained, too.",
+              "Tells in about ten plain lines why a building looks as it does: storeys, height, roof and style with "
+              "where they come from and how sure they are (sure, likely, a guess), where it stands, what was "
+              "simplified or mended, and how to change it. The building is named by its id, its address or its name; "
+              "case, accents, postcode and town may be left out. --all tells everything that the build knows of it: "
+              "each value with its source, its confidence and what else was considered, what each stage did with it, "
+              "what fell back and why, and the files it stands in. An object that is not in the model is explained, "
+              "too.",
           .options = settings::kExplain,
           .examples = {{"blockrand explain out/leipzig w123", ""},
+                       {"blockrand explain out/leipzig \"Karl-Liebknecht-Str. 5\"", ""},
+                       {"blockrand explain out/leipzig Thomaskirche", ""},
+                       {"blockrand explain out/leipzig w123 --all", ""},
                        {"blockrand explain out/leipzig https://www.openstreetmap.org/way/123", ""},
                        {"blockrand explain out/leipzig w123 --edges", ""},
                        {"blockrand explain out/leipzig w123 --style", ""},
@@ -378,6 +405,37 @@ std::string overlay_text(const std::string& folder, const outputs::FoundExplanat
   return path.empty() ? "" : "\nThe aerial image with its outline: " + path + " (--chip FILE.png: this piece of it)\n";
 }
 
+/// "Arkonaplatz 5, 10435 Berlin", "Zionskirche, Zionskirchplatz"
+std::string place_title(const outputs::Place& place) {
+  if (place.name.empty()) return place.addresses;
+  return place.addresses.empty() ? place.name : place.name + ", " + place.addresses;
+}
+
+/// The building at an address or with a name. Empty where that is not one building: what to do then is told.
+std::optional<model::OsmId> id_by_address(const std::string& folder, const std::string& text) {
+  constexpr std::size_t kMostListed = 10;
+  const outputs::FoundPlaces found = outputs::find_places(folder, text);
+  const auto tell = [](const std::string& line) { std::fputs((printable(line) + "\n").c_str(), stderr); };
+  if (found.places.size() == 1) {
+    if (!found.exact) tell(fmt::format("blockrand: no building has just '{}'; this one is beside it.", text));
+    return outputs::parse_object_id(found.places[0].id);
+  }
+  if (found.places.empty()) {
+    std::string line = fmt::format("blockrand: {}: no building is mapped with the address or name '{}'.", folder, text);
+    if (!found.nearest.empty()) line += fmt::format(" Did you mean '{}'?", fmt::join(found.nearest, "' or '"));
+    tell(line);
+    tell("Ask for a house number that is mapped, for the name of a building, or by id, for example w123.");
+    return std::nullopt;
+  }
+  tell(fmt::format(
+      "blockrand: {} buildings answer to '{}'. Ask for one of them by its id, or add what tells them apart:",
+      found.places.size(), text));
+  for (std::size_t i = 0; i < std::min(found.places.size(), kMostListed); ++i)
+    tell(fmt::format("  {:<14} {}", found.places[i].id, place_title(found.places[i])));
+  if (found.places.size() > kMostListed) tell(fmt::format("  and {} more", found.places.size() - kMostListed));
+  return std::nullopt;
+}
+
 }  // namespace
 
 int run_explain(const std::vector<std::string>& arguments) {
@@ -387,11 +445,13 @@ int run_explain(const std::vector<std::string>& arguments) {
     return kSuccess;
   }
   const settings::Settings& s = line.settings;
-  const auto id = outputs::parse_object_id(s.id);
-  if (!id) {
-    const bool number = s.id.find_first_not_of("0123456789") == std::string::npos;
+  if (s.id.find_first_not_of("0123456789") == std::string::npos)
     throw base::UsageError(fmt::format("{} is no id of an OpenStreetMap object. Write {} for a way, {} for a relation.",
-                                       s.id, number ? "w" + s.id : "w123", number ? "r" + s.id : "r45"));
+                                       s.id, s.id.empty() ? "w123" : "w" + s.id, s.id.empty() ? "r45" : "r" + s.id));
+  auto id = outputs::parse_object_id(s.id);
+  if (!id) {
+    id = id_by_address(s.folder, s.id);
+    if (!id) return kInvalidInput;
   }
   const auto found = outputs::find_explanation(s.folder, *id);
   if (!found)
@@ -401,10 +461,15 @@ int run_explain(const std::vector<std::string>& arguments) {
   const bool is_body = s.id.find('.') != std::string::npos && s.id.find('/') == std::string::npos;
   if (s.json)
     std::printf("%s\n", found->json.c_str());
-  else
+  else if (s.all || s.edges || s.style)
     std::fputs(
         (explanation_text(*found, is_body ? s.id : "", s.edges, s.style) + overlay_text(s.folder, *found)).c_str(),
         stdout);
+  else
+    std::fputs((plain_text(*found) + overlay_text(s.folder, *found) +
+                fmt::format("\nEverything that is known of it: blockrand explain {} {} --all\n", s.folder, id->text()))
+                   .c_str(),
+               stdout);
   return kSuccess;
 }
 

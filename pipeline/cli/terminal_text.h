@@ -15,7 +15,10 @@ inline std::string wrapped(const std::string& text, std::size_t indent) {
   std::size_t column = indent;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find(' ', at), text.size());
-    const std::size_t length = end - at;
+    // A letter of several bytes takes one column.
+    const std::size_t length = static_cast<std::size_t>(std::count_if(text.begin() + static_cast<std::ptrdiff_t>(at),
+                                                                      text.begin() + static_cast<std::ptrdiff_t>(end),
+                                                                      [](char c) { return (c & 0xC0) != 0x80; }));
     if (column > indent && column + 1 + length > kTerminalWidth) {
       out += "\n" + std::string(indent, ' ');
       column = indent;
@@ -23,7 +26,7 @@ inline std::string wrapped(const std::string& text, std::size_t indent) {
       out += ' ';
       ++column;
     }
-    out.append(text, at, length);
+    out.append(text, at, end - at);
     column += length;
     at = end + 1;
   }

@@ -46,8 +46,9 @@ struct Settings {
   std::string start_rule;                    ///< of `grammar run`; empty: the rule file's own
   bool rule_tree = false;                    ///< `grammar run` prints all shapes, not only leaves
   std::string map_by = "preset";             ///< of `districts show`: what the map is coloured by
-  std::string id;                            ///< of the building that `explain` is asked about
+  std::string id;                            ///< or address of the building that `explain` is asked about
   bool json = false;                         ///< print JSON
+  bool all = false;                          ///< `explain` tells everything
   bool edges = false;                        ///< `explain` lists the wall segments of the outline
   bool style = false;                        ///< `explain` lists all evidence for the style
   std::string chip;                          ///< PNG that `explain` writes: the building in its aerial image

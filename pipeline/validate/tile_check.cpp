@@ -394,6 +394,14 @@ class Checker {
     compare_polygons({flat, files_.path[format]}, other, out_.findings);
   }
 
+  /// The tile's lines of explain/places.tsv; null where the build has no such file.
+  const std::map<std::string, PlaceRow>* places() const {
+    static const std::map<std::string, PlaceRow> none;
+    if (!context_.places) return nullptr;
+    const auto found = context_.places->find(files_.name);
+    return found == context_.places->end() ? &none : &found->second;
+  }
+
   void check_explained() {
     if (!context_.explanations) return;
     std::size_t format = 0;
@@ -411,7 +419,7 @@ class Checker {
     const auto entries = context_.explanations->find(files_.name);
     out_.explained = check_explanations(
         *lines, files_.explanations, files_.name, reference, format == kCityGml && lean_,
-        entries == context_.explanations->end() ? none : entries->second, context_.record, out_.findings);
+        entries == context_.explanations->end() ? none : entries->second, places(), context_.record, out_.findings);
   }
 
   // ---- against the map

@@ -86,6 +86,7 @@ struct TileContext {
   const std::set<std::string>* overlapping = nullptr;  ///< objects of which the report tells an overlap
   GeoPackageReader* geopackage = nullptr;              ///< null: not there, or unreadable
   const ExplanationIndex* explanations = nullptr;
+  const ExplainedPlaces* places = nullptr;  ///< null: the build has no explain/places.tsv
 };
 
 /// Never throws on account of what the files hold.

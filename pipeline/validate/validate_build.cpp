@@ -117,6 +117,12 @@ class Run {
       else if (!record_.files.count("explain/index.txt"))
         log().add(Check::build_json, "build.json", "explain/index.txt",
                   "the configuration asks for it, but no such file is listed");
+      if (record_.files.count("explain/places.tsv")) {
+        if (const auto places = content_of(full("explain/places.tsv"), why)) places_ = read_places(*places, log());
+      } else if (index_) {
+        v_.notes.push_back(
+            "explain/places.tsv is not listed: an older program made this build, which knows no addresses");
+      }
     }
     if (record_.has("gpkg") && record_.files.count("buildings.gpkg") && fs::exists(full("buildings.gpkg"))) {
       progress_.begin("buildings.gpkg");
@@ -267,6 +273,10 @@ class Run {
       for (const auto& [tile, entries] : *index_)
         if (!tiles.count(tile))
           log().add(Check::explanation_wrong, "explain/index.txt", tile, "the index names a tile that is not there");
+    if (places_)
+      for (const auto& [tile, places] : *places_)
+        if (!tiles.count(tile))
+          log().add(Check::explanation_wrong, "explain/places.tsv", tile, "names a tile that is not there");
     if (geopackage_)
       for (std::string tile : geopackage_->tiles()) {
         std::replace(tile.begin(), tile.end(), '/', '_');
@@ -347,7 +357,8 @@ class Run {
             .geoid = geoid_,
             .overlapping = report_ ? &report_->overlapping : nullptr,
             .geopackage = geopackage_.get(),
-            .explanations = index_ ? &*index_ : nullptr};
+            .explanations = index_ ? &*index_ : nullptr,
+            .places = places_ ? &*places_ : nullptr};
   }
 
   void take(TileResult&& tile) {
@@ -560,6 +571,7 @@ class Run {
   georef::Geoid geoid_;
   std::unique_ptr<GeoPackageReader> geopackage_;
   std::optional<ExplanationIndex> index_;
+  std::optional<ExplainedPlaces> places_;
   FormatCounts totals_[kTileFormats], geopackage_total_;
   std::set<std::string> buildings_;
   std::uint64_t explained_ = 0;

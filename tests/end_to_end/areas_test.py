@@ -24,7 +24,7 @@ def areas(folder):
 
 
 def tile_files(folder):
-    return {p: h for p, h in hashes(folder, *OF_TILES).items() if p != 'explain/index.txt'}
+    return {p: h for p, h in hashes(folder, *OF_TILES).items() if p not in ('explain/index.txt', 'explain/places.tsv')}
 
 
 def in_areas(folder):
@@ -159,7 +159,7 @@ class Areas(BuildTest):
         at_once = self.build(source, 'lost_once', *QUICK)
         divided = self.build(source, 'lost_divided', *QUICK, '--areas', LEVEL)
         self.assertEqual(read_json(at_once, 'build.json')['issues'], read_json(divided, 'build.json')['issues'])
-        told = blockrand('explain', divided, f'w{number}')
+        told = blockrand('explain', divided, f'w{number}', '--all')
         self.assertEqual(told.code, 0, told)
         self.assertIn('OPEN_WAY', told.out + told.err)
         orders = self.place('lost.toml', f'[w{number}]\nstoreys = 3\n')
@@ -174,6 +174,14 @@ class Areas(BuildTest):
                 ids.append(f.readline().split()[0])
         for id_ in ids:
             self.assertEqual(blockrand('explain', divided, id_).code, 0)
+        places = []
+        for area in areas(divided):
+            with open(os.path.join(divided, 'areas', area, 'explain', 'places.tsv'), encoding='utf-8', newline='') as f:
+                places += f.readlines()
+        at_once = self.build(self.town, 'explained_once', *QUICK)
+        with open(os.path.join(at_once, 'explain', 'places.tsv'), encoding='utf-8', newline='') as f:
+            self.assertEqual(sorted(places), sorted(f.readlines()))
+        self.assertIn('no building is mapped', blockrand('explain', divided, 'Nowhere Street 5').err)
         self.assertNotEqual(blockrand('explain', divided, 'w999999999').code, 0)
 
     def test_orders_that_match_nothing_are_told(self):

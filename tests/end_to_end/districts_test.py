@@ -186,7 +186,7 @@ class Districts(BuildTest):
             'select storeys, storeys_source, storeys_confidence, roof_shape, wall_colour, wall_colour_source, preset, preset_source '
             'from buildings where id = ?', (identity,)).fetchone()
         self.assertEqual(row, (7, 'override', 1, 'flat', '#123456', 'override', 'slab', 'override'))
-        run = blockrand('explain', first, identity)
+        run = blockrand('explain', first, identity, '--all')
         self.assertEqual(run.code, 0, run)
         self.assertIn('overrides.toml:2', run.out)
         self.assertIn('storey 1 ordered height=4.5', ' '.join(run.out.split()))

@@ -179,7 +179,7 @@ class Imagery(BuildTest):
         told = {i: o['attributes'] for feature in features for i, o in feature['CityObjects'].items() if o['type'] == 'Building'}
         self.assertEqual(told['w105']['imagery_state'], 'moved')
         self.assertAlmostEqual(told['w105']['imagery_shift_east'], -self.MOVED[5][0], delta=0.35)
-        explained = blockrand('explain', out, 'w105')
+        explained = blockrand('explain', out, 'w105', '--all')
         self.assertIn('as village.ppm shows it', ' '.join(explained.out.split()))
         receipt = json.loads(blockrand('explain', out, 'w105', '--json').out)['imagery']
         self.assertEqual((receipt['state'], receipt['image']), ('moved', 'village.ppm'))
@@ -205,7 +205,7 @@ class Imagery(BuildTest):
         before = json.loads(blockrand('explain', self.path('mapped'), 'w105', '--json').out)['outline']
         self.assertEqual(corner, before)
         # A tile that is built alone takes what the whole found.
-        tile, = {f.split('/')[1] for f in files_of(out) if f.startswith('explain/') and f != 'explain/index.txt'}
+        tile, = {f.split('/')[1] for f in files_of(out) if f.startswith('explain/') and f.endswith('.jsonl.gz')}
         alone = self.build(self.map, 'alone', '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json'))
         self.same_files(out, alone, 'tiles', 'citygml', 'cityjson', 'explain')
         self.assertEqual(blockrand('validate', alone).code, 0)
@@ -277,10 +277,10 @@ class Imagery(BuildTest):
         self.assertEqual(middles(out, 'footprint_before'), middles(mapped))
         rows = dict(query(out, "SELECT id, state FROM footprint_before WHERE walls_shifted > 0"))
         self.assertEqual(rows, {f'w{100 + k}': 'reshaped' for k in off})
-        self.assertIn('1 wall shifted by', ' '.join(blockrand('explain', out, 'w103').out.split()))
+        self.assertIn('1 wall shifted by', ' '.join(blockrand('explain', out, 'w103', '--all').out.split()))
         self.assertIn('imagery_walls_shifted', ''.join(read_text(out, f) for f in files_of(out) if f.endswith('.gml')))
         self.assertIn('Single walls', read_text(out, 'imagery.html'))
-        tile, = {f.split('/')[1] for f in files_of(out) if f.startswith('explain/') and f != 'explain/index.txt'}
+        tile, = {f.split('/')[1] for f in files_of(out) if f.startswith('explain/') and f.endswith('.jsonl.gz')}
         alone = self.build(source, 'walls_alone', '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json'))
         self.same_files(out, alone, 'tiles', 'citygml', 'cityjson', 'explain')
         # Two threads or one, the same bytes; an override keeps a house; 0 looks for no walls.
@@ -313,10 +313,10 @@ class Imagery(BuildTest):
         right = [k for k in seen if told[f'w{100 + k}'][0] == storeys[k]]
         self.assertGreater(len(right), 0.8 * len(seen), [(storeys[k], told[f'w{100 + k}']) for k in seen])
         self.assertEqual({told[f'w{100 + k}'] for k in range(0, 64, 3)}, {(s, 'tag') for s in (1, 2, 3)}, 'tags are stronger')
-        words = blockrand('explain', out, f'w{100 + seen[0]}').out
+        words = blockrand('explain', out, f'w{100 + seen[0]}', '--all').out
         self.assertIn('a shadow of', words)
         self.assertEqual(blockrand('validate', out).code, 0)
-        tile, = {f.split('/')[1] for f in files_of(out) if f.startswith('explain/') and f != 'explain/index.txt'}
+        tile, = {f.split('/')[1] for f in files_of(out) if f.startswith('explain/') and f.endswith('.jsonl.gz')}
         alone = self.build(source, 'sunny_alone', '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json'))
         self.same_files(out, alone, 'tiles', 'citygml', 'cityjson', 'explain')
 
@@ -390,7 +390,7 @@ class Imagery(BuildTest):
         told = {b['id'] for b in read_json(out, 'imagery.json')['buildings'] if 'perhaps_gone' in b}
         self.assertEqual(told, {'w164'})
         self.assertIn('1 perhaps gone', self.last.out)
-        self.assertIn('perhaps gone', blockrand('explain', out, 'w164').out)
+        self.assertIn('perhaps gone', blockrand('explain', out, 'w164', '--all').out)
         self.assertIn('Perhaps gone: 1', read_text(out, 'imagery.html'))
         self.assertGreater(query(out, "SELECT perhaps_gone FROM footprint_before WHERE id = 'w164'")[0][0], 0.8)
         self.assertIn('imagery_perhaps_gone', ''.join(read_text(out, f) for f in files_of(out) if f.endswith('.gml')))
@@ -429,7 +429,7 @@ class Imagery(BuildTest):
         again = self.build(source, 'less_again', '--config', config, '--lod', '1', '--jobs', '1')
         self.same_files(out, again, 'imagery.json', 'imagery.html', 'buildings.gpkg')
         # Tiles alone have the candidates of the whole between them.
-        tiles = sorted({f.split('/')[1] for f in files_of(out) if f.startswith('explain/') and f != 'explain/index.txt'})
+        tiles = sorted({f.split('/')[1] for f in files_of(out) if f.startswith('explain/') and f.endswith('.jsonl.gz')})
         ids = []
         for k, tile in enumerate(tiles):
             alone = self.build(source, f'less_alone_{k}', '--lod', '1', '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json'))
@@ -464,13 +464,13 @@ class Imagery(BuildTest):
         courts = {b['id']: b['courtyards'] for b in read_json(out, 'imagery.json')['buildings'] if 'courtyards' in b}
         self.assertEqual({i: [c['courtyard'] for c in cs] for i, cs in courts.items()}, {'r900': ['open'], 'r901': ['perhaps_built_over']}, courts)
         self.assertAlmostEqual(courts['r900'][0]['area_m2'], 196, delta=2)
-        self.assertIn('perhaps built over', ' '.join(blockrand('explain', out, 'r901').out.split()))
-        self.assertIn('courtyard: open', ' '.join(blockrand('explain', out, 'r900').out.split()))
+        self.assertIn('perhaps built over', ' '.join(blockrand('explain', out, 'r901', '--all').out.split()))
+        self.assertIn('courtyard: open', ' '.join(blockrand('explain', out, 'r900', '--all').out.split()))
         self.assertIn('Courtyards perhaps built over: 1', read_text(out, 'imagery.html'))
         gml = ''.join(read_text(out, f) for f in files_of(out) if f.endswith('.gml'))
         self.assertEqual(gml.count('<gen:stringAttribute name="imagery_courtyard">'), 2)
         self.assertEqual(blockrand('validate', out).code, 0)
-        tile, = {f.split('/')[1] for f in files_of(out) if f.startswith('explain/') and f != 'explain/index.txt'}
+        tile, = {f.split('/')[1] for f in files_of(out) if f.startswith('explain/') and f.endswith('.jsonl.gz')}
         alone = self.build(source, 'court_alone', '--lod', '1', '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json'))
         self.same_files(out, alone, 'tiles', 'citygml', 'cityjson', 'explain')
 

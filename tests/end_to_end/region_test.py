@@ -360,7 +360,7 @@ class Care(RegionTest):
                 whole.edit(node, lon=(west + east) / 2, lat=(south + north) / 2)
                 whole.edit(house, tags=dict(house.tags, name='late'))
                 self.update(folder, whole.write_changes(self.path('late.osc')))
-                explained = blockrand('explain', self.current(folder), f'w{house.id}')
+                explained = blockrand('explain', self.current(folder), f'w{house.id}', '--all')
                 self.assertIn('OUTLINE_INCOMPLETE', explained.out + explained.err)
                 self.update(folder, whole.write(self.path('whole.osm')))
                 same(self.current(folder), self.clean(whole.clipped(inside), folder, *options, *crs))

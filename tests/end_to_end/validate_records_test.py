@@ -157,6 +157,27 @@ class Explanations(Damages):
         d.change('explain/index.txt', lambda t: t.replace(b'15_34776_25753', b'15_34776_25754', 1))
         self.found(d, 'EXPLANATION_WRONG', d.explained)
 
+    def test_places_that_say_something_else(self):
+        """A name, a height, a place, a line that is gone, and one that is not about anything."""
+        def changed(change):
+            d = self.damaged()
+            d.change('explain/places.tsv', change)
+            return d
+
+        def in_first(field, value):
+            def change(text):
+                first, rest = text.split(b'\n', 1)
+                fields = first.split(b'\t')
+                fields[field] = value
+                return b'\t'.join(fields) + b'\n' + rest
+            return change
+        for change, what in ((in_first(6, b'Palace'), 'Palace'), (in_first(4, b'99.9'), '99.9'), (in_first(2, b'0.5'), 'stands at'),
+                             (in_first(5, b'Other Street 5'), 'Other Street 5'), (in_first(0, b'w99999'), 'is missing'),
+                             (lambda t: t.split(b'\n', 1)[1], 'is missing'), (lambda t: b'nonsense\n' + t, 'line 1'),
+                             (lambda t: t.split(b'\n', 1)[0] + b'\n' + t, 'twice'),
+                             (lambda t: t.split(b'\n', 1)[1] + t.split(b'\n', 1)[0] + b'\n', 'order of ids')):
+            self.found(changed(change), 'EXPLANATION_WRONG', what)
+
     def test_a_report_row_that_is_missing(self):
         d = self.damaged()
         d.json('report.json', lambda r: r['notices'].pop())

@@ -203,8 +203,12 @@ def seed_build(seeds, name, out):
     seeds.add("build_record", name + "_page", re.sub(r"base64,[A-Za-z0-9+/=]+", "base64,AAAA",
                                                      (out / "report.html").read_text()), 2)
     seeds.add("build_record", name + "_index", out / "explain" / "index.txt", 3)
+    places = (out / "explain" / "places.tsv").read_bytes()
     for records in sorted((out / "explain").glob("*.jsonl.gz")):
         seeds.add("build_record", name + "_records", gzip.decompress(records.read_bytes()), 4)
+        tile = records.name.split(".")[0].encode()
+        seeds.add("build_record", name + "_places",
+                  (places + gzip.decompress(records.read_bytes())).replace(tile, b"15_1_2"), 5)
 
 
 def seed_builds(seeds, program, extracts, folder):

@@ -1,8 +1,10 @@
 #include "pipeline/outputs/explain/explain_output.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "pipeline/outputs/explain/explanation.h"
+#include "pipeline/outputs/explain/places.h"
 #include "pipeline/outputs/gzip.h"
 
 namespace blockrand::outputs {
@@ -11,8 +13,11 @@ namespace {
 /// Fast; explanations repeat themselves so much that the highest level gains a tenth.
 constexpr int kGzipLevel = 4;
 
-/// Object, building whose line explains it.
-using ExplainedObjects = std::vector<std::pair<model::OsmId, model::OsmId>>;
+/// What a tile's explanations add to the files of the whole build.
+struct ExplainedTile {
+  std::vector<std::pair<model::OsmId, model::OsmId>> objects;  ///< with the building whose line explains it
+  std::vector<std::pair<model::OsmId, std::string>> places;    ///< lines of explain/places.tsv
+};
 
 /// Where the line stands that explains an object.
 struct ExplainedObject {
@@ -28,12 +33,19 @@ std::string explain_index(std::vector<ExplainedObject> objects) {
   return text;
 }
 
-class ExplainOutput : public OutputOf<ExplainedObjects> {
+std::string places_text(std::vector<std::pair<model::OsmId, std::string>> places) {
+  std::sort(places.begin(), places.end());
+  std::string text;
+  for (const auto& [building, line] : places) text += line;
+  return text;
+}
+
+class ExplainOutput : public OutputOf<ExplainedTile> {
  public:
   explicit ExplainOutput(const OutputContext& context) : context_(context) {}
 
   std::any write_tile(FinishedTile& tile) const override {
-    if (tile.region.buildings.empty()) return ExplainedObjects();
+    if (tile.region.buildings.empty()) return ExplainedTile();
     ExplainOptions options;
     options.lod = context_.lod;
     options.earlier = context_.earlier;
@@ -46,14 +58,17 @@ class ExplainOutput : public OutputOf<ExplainedObjects> {
     Explanations explanations = explain(tile.region, options);
     tile.files.push_back(
         context_.folder.write("explain/" + tile.name + ".jsonl.gz", gzip(explanations.lines, kGzipLevel)));
-    return std::move(explanations.objects);
+    return ExplainedTile{std::move(explanations.objects), std::move(explanations.places)};
   }
   void take(const FinishedTile& tile, std::any product) override {
-    for (const auto& [object, building] : *std::any_cast<ExplainedObjects>(&product))
+    ExplainedTile& explained = *std::any_cast<ExplainedTile>(&product);
+    for (const auto& [object, building] : explained.objects)
       explained_.push_back({object, building, context_.shards[tile.shard].tile});
+    std::move(explained.places.begin(), explained.places.end(), std::back_inserter(places_));
   }
   void finish(const FinishedBuild& build) override {
     build.files.push_back(context_.folder.write("explain/index.txt", explain_index(std::move(explained_))));
+    build.files.push_back(context_.folder.write(kPlacesFile, places_text(std::move(places_))));
   }
 
  private:
@@ -68,6 +83,7 @@ class ExplainOutput : public OutputOf<ExplainedObjects> {
 
   const OutputContext& context_;
   std::vector<ExplainedObject> explained_;
+  std::vector<std::pair<model::OsmId, std::string>> places_;
 };
 
 }  // namespace
@@ -77,7 +93,7 @@ OutputFormat explain_output() {
           .in_formats = false,
           .manual = {{"explain/", "what 'blockrand explain' reads"}},
           .asked = [](const OutputOptions& o) { return o.explain; },
-          .bytes_per_building = [](const OutputOptions&, std::size_t) { return 2100.0; },
+          .bytes_per_building = [](const OutputOptions&, std::size_t) { return 2180.0; },
           .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<ExplainOutput>(c); }};
 }
 

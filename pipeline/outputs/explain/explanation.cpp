@@ -10,6 +10,7 @@
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/outputs/explain/detail_text.h"
 #include "pipeline/outputs/explain/json_text.h"
+#include "pipeline/outputs/explain/places.h"
 #include "pipeline/outputs/explain/situation_text.h"
 #include "pipeline/outputs/explain/style_text.h"
 #include "pipeline/outputs/number_text.h"
@@ -58,7 +59,14 @@ class Writer {
       if (part.lod >= 0) lod = lod < 0 ? part.lod : std::min(lod, part.lod);
     if (lod >= 0) json_.number("lod", lod);
     identity(building);
-    outline(building.mapped_index);
+    const Middle middle = outline(building.mapped_index);
+    out.places.emplace_back(building.osm, place_line({.id = building.id(),
+                                                      .tile = options_.tile,
+                                                      .lon = middle.lon,
+                                                      .lat = middle.lat,
+                                                      .top = top_of(building),
+                                                      .addresses = addresses_of(region_, tags_, building),
+                                                      .name = std::string(tags_.name(building.tags))}));
     stages(building, final_state);
     append_style(json_, building);
     attributes(building.attributes);
@@ -91,11 +99,14 @@ class Writer {
       *text_ += "{}";
   }
 
-  void outline(std::uint32_t mapped_index) {
-    if (!region_.extract || mapped_index == model::kNoIndex) return;
+  struct Middle {
+    double lon = 0, lat = 0;  // degrees
+  };
+  Middle outline(std::uint32_t mapped_index) {
+    if (!region_.extract || mapped_index == model::kNoIndex) return {};
     const model::Extract& extract = *region_.extract;
     const auto rings = extract.rings_of(extract.buildings[mapped_index].rings);
-    if (rings.empty()) return;
+    if (rings.empty()) return {};
     // The vertices of an object's rings follow each other in the extract or not: go by ring.
     std::vector<std::int64_t> nodes, lon, lat;
     std::int64_t west = 0, east = 0, south = 0, north = 0;
@@ -119,8 +130,9 @@ class Writer {
     if (middle < -kTurn / 2) middle += kTurn;
     json_.key("place");
     json_.open('{');
-    json_.number("lon", static_cast<double>(middle) / 1e7);
-    json_.number("lat", static_cast<double>(south + (north - south) / 2) / 1e7);
+    const Middle place{static_cast<double>(middle) / 1e7, static_cast<double>(south + (north - south) / 2) / 1e7};
+    json_.number("lon", place.lon);
+    json_.number("lat", place.lat);
     json_.close('}');
     json_.key("outline");
     json_.open('{');
@@ -130,6 +142,7 @@ class Writer {
     json_.integers("rings", rings.size(),
                    [&](std::size_t i) { return static_cast<std::int64_t>(rings[i].vertices.count); });
     json_.close('}');
+    return place;
   }
 
   // ---- what each stage did
@@ -173,7 +186,7 @@ class Writer {
     if (seen) append_imagery(json_, *seen);
     append_repair(json_, building);
     append_situation(json_, building);
-    append_edges(json_, building);
+    append_edges(json_, building, region_.extract);
   }
 
   std::string mapped_text(const Building& building) const {

@@ -76,6 +76,8 @@ struct Explanations {
   std::string lines;
   /// Every object that a line speaks of, building or part, with the building whose line it is.
   std::vector<std::pair<model::OsmId, model::OsmId>> objects;
+  /// Each building with its line of explain/places.tsv (places.h).
+  std::vector<std::pair<model::OsmId, std::string>> places;
 };
 
 /// Explains the owned buildings of a region after its masses were built; also those that ended as reported.

@@ -169,13 +169,12 @@ std::optional<FoundExplanation> find_in_areas(const std::string& folder, const s
 
 }  // namespace
 
-std::optional<FoundExplanation> find_explanation(const std::string& folder, model::OsmId id) {
+void check_explained(const std::string& folder) {
   std::error_code error;
   if (!fs::exists(fs::path(folder) / "build.json", error))
     throw base::UsageError(folder +
                            " is no build (it has no build.json). Name the output folder of 'blockrand build'.");
-  if (const std::vector<std::string> areas = area_folders(folder); !areas.empty())
-    return find_in_areas(folder, areas, id);
+  if (!area_folders(folder).empty()) return;
   const std::string index = folder + "/explain/index.txt";
   if (!fs::exists(index, error)) {
     const Json build = Json::parse(read_file(folder + "/build.json"), nullptr, false);
@@ -184,6 +183,13 @@ std::optional<FoundExplanation> find_explanation(const std::string& folder, mode
       throw base::UsageError(folder + " was built with --no-explain. Build again without it to get explanations.");
     damaged(index, "is missing");
   }
+}
+
+std::optional<FoundExplanation> find_explanation(const std::string& folder, model::OsmId id) {
+  check_explained(folder);
+  if (const std::vector<std::string> areas = area_folders(folder); !areas.empty())
+    return find_in_areas(folder, areas, id);
+  const std::string index = folder + "/explain/index.txt";
   if (const auto entry = look_up(index, id))
     return FoundExplanation{line_of(folder + "/explain/" + entry->tile + ".jsonl.gz", entry->building), true, id,
                             entry->building};

@@ -22,6 +22,10 @@ struct FoundExplanation {
   model::OsmId explained;
 };
 
+/// \throws base::UsageError  `folder` is no build, or was built without explanations
+/// \throws base::InputError  its index is gone. The areas of a build in areas are not looked at.
+void check_explained(const std::string& folder);
+
 /// Looks `id` up in explain/index.txt by bisection, then reads one tile's lines; falls back on report.json. A duplicate
 /// leads to the object that it duplicates.
 /// \param folder  the output folder of a build

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "pipeline/outputs/explain/places.h"
 #include "pipeline/outputs/wall_segment_ids.h"
 
 namespace blockrand::outputs {
@@ -251,7 +252,7 @@ void append_situation(JsonText& json, const Building& building) {
 
 namespace {
 
-void append_points(JsonText& json, const std::vector<model::WallPoint>& points) {
+void append_points(JsonText& json, const std::vector<model::WallPoint>& points, const model::Extract* extract) {
   if (points.empty()) return;
   json.key("points");
   json.open('[');
@@ -259,7 +260,11 @@ void append_points(JsonText& json, const std::vector<model::WallPoint>& points) 
     json.open('{');
     json.string("id", point.id.text());
     json.flag("entrance", point.entrance);
-    if (!point.house_number.empty()) json.string("house_number", point.house_number);
+    if (!point.house_number.empty()) {
+      json.string("house_number", point.house_number);
+      if (const auto street = extract ? street_of_point(*extract, point.id) : std::string_view(); !street.empty())
+        json.string("street", street);
+    }
     if (!point.use.empty()) json.string("use", point.use);
     json.close('}');
   }
@@ -268,7 +273,7 @@ void append_points(JsonText& json, const std::vector<model::WallPoint>& points) 
 
 }  // namespace
 
-void append_edges(JsonText& json, const Building& building) {
+void append_edges(JsonText& json, const Building& building, const model::Extract* extract) {
   const std::vector<IdentifiedWallSegment> found = wall_segments(building);
   if (found.empty()) return;
   const std::vector<std::uint32_t>& fronts = building.situation.fronts;
@@ -297,7 +302,7 @@ void append_edges(JsonText& json, const Building& building) {
                                     std::pair("chamfer", e.chamfer)})
       if (set) json.flag(name, true);
     if (e.entrances > 0) json.number("entrances", e.entrances);
-    append_points(json, e.points);
+    append_points(json, e.points, extract);
     if (e.arc >= 0 && static_cast<std::size_t>(e.arc) < building.arcs.size())
       json.number("radius", rounded(building.arcs[static_cast<std::size_t>(e.arc)].radius));
     json.close('}');

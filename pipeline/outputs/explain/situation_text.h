@@ -31,6 +31,7 @@ void append_repair(JsonText& json, const model::Building& building);
 /// "imagery":{...}: the receipt of an aerial image.
 void append_imagery(JsonText& json, const SeenOutline& seen);
 void append_situation(JsonText& json, const model::Building& building);
-void append_edges(JsonText& json, const model::Building& building);
+/// \param extract  where points have their streets; may be null
+void append_edges(JsonText& json, const model::Building& building, const model::Extract* extract);
 
 }  // namespace blockrand::outputs
