@@ -33,6 +33,8 @@ std::string_view name(Commands command) {
       return "rollback";
     case kRegion:
       return "region";
+    case kView:
+      return "view";
     case kCache:
       return "cache";
   }

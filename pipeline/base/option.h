@@ -34,10 +34,11 @@ enum Commands : unsigned {
   kStatus = 256,
   kRollback = 512,
   kRegion = 1024,
-  kCache = 2048
+  kCache = 2048,
+  kView = 4096
 };
-inline constexpr Commands kAllCommands[] = {kBuild,   kInfo,   kExplain, kValidate, kCompare, kDistricts,
-                                            kGrammar, kUpdate, kStatus,  kRollback, kRegion,  kCache};
+inline constexpr Commands kAllCommands[] = {kBuild,  kInfo,   kExplain,  kValidate, kCompare, kDistricts, kGrammar,
+                                            kUpdate, kStatus, kRollback, kRegion,   kCache,   kView};
 std::string_view name(Commands command);  ///< "build"
 
 /// Where an option stands in help and reference. One with keys is a table of the config file, too, and all but the main

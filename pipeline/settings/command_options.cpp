@@ -22,7 +22,7 @@ Table of_finished_builds() {
   return {text({.name = "FOLDER",
                 .argument = "FOLDER",
                 .type = OptionType::folder,
-                .commands = kExplain | kValidate,
+                .commands = kExplain | kValidate | kView,
                 .help = "what 'blockrand build' wrote",
                 .if_missing = "no FOLDER is given: name the output folder of a build.",
                 .after = "INPUT"},
@@ -232,6 +232,24 @@ Table of_explain() {
                &S::chip)};
 }
 
+Table of_view() {
+  return {integer({.name = "port",
+                   .argument = "N",
+                   .commands = kView,
+                   .minimum = 1,
+                   .maximum = 65535,
+                   .help = "port on 127.0.0.1; where nothing is said 8712, or another one if that is taken",
+                   .after = "chip"},
+                  &S::port),
+          flag({.name = "open", .commands = kView, .help = "show it in the browser of this desktop"}, &S::open),
+          text({.name = "export",
+                .argument = "SITE",
+                .type = OptionType::folder,
+                .commands = kView,
+                .help = "write the page and what it shows as files for any web server, instead of serving it"},
+               &S::site)};
+}
+
 /// "2%", "2 %" or "2" → 0.02.
 double parse_percent(const std::string& text) {
   const std::string remedy = "Write for example 2%.";
@@ -277,7 +295,7 @@ const base::Choices<base::LogFormat> kLogFormats = {{"text", base::LogFormat::te
 
 Table of_messages() {
   constexpr unsigned all =
-      kBuild | kInfo | kValidate | kCompare | kDistricts | kGrammar | kUpdate | kRollback | kRegion | kCache;
+      kBuild | kInfo | kValidate | kCompare | kDistricts | kGrammar | kUpdate | kRollback | kRegion | kCache | kView;
   constexpr base::OptionSection messages{.name = "messages", .title = "Messages"};
   return base::in_section<S>(
       messages,
@@ -297,8 +315,8 @@ Table of_messages() {
 }  // namespace
 
 std::vector<base::OptionTable<Settings>> command_options() {
-  return {of_finished_builds(), of_regions(), of_caches(),  of_districts(), of_grammar(),
-          of_build(),           of_explain(), of_several(), of_compare(),   of_messages()};
+  return {of_finished_builds(), of_regions(), of_caches(),  of_districts(), of_grammar(), of_build(),
+          of_explain(),         of_view(),    of_several(), of_compare(),   of_messages()};
 }
 
 }  // namespace blockrand::settings

@@ -52,6 +52,9 @@ struct Settings {
   bool edges = false;                        ///< `explain` lists the wall segments of the outline
   bool style = false;                        ///< `explain` lists all evidence for the style
   std::string chip;                          ///< PNG that `explain` writes: the building in its aerial image
+  int port = 0;                              ///< of `view`; 0: not said
+  bool open = false;                         ///< `view` starts the browser
+  std::string site;                          ///< folder that `view` writes; empty: it serves
   base::ProgressStyle progress = base::ProgressStyle::automatic;
   base::LogFormat log_format = base::LogFormat::text;
   bool quiet = false;  ///< warnings and errors only
