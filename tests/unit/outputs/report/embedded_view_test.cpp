@@ -36,13 +36,18 @@ class EmbeddedView : public testing::Test {
   std::optional<std::string> page(std::uint64_t most = kMostEmbedded) {
     std::vector<base::PublishedFile> files;
     for (const auto& [path, content] : contents_) files.push_back({path, content.size(), ""});
+    ViewRecord view;
+    view.name = "A < B & \"C\"";
+    view.lod = 3;
+    view.buildings = 12;
+    view.attribution = "© OSM";
     return embedded_view(
         files,
         [&](const std::string& path) {
           ++read_;
           return contents_.at(path);
         },
-        {.name = "A < B & \"C\"", .lod = 3, .buildings = 12, .attribution = "© OSM"}, most);
+        view, most);
   }
   std::map<std::string, std::string> contents_ = {
       {"tileset.json", R"({"root":{"boundingVolume":{"region":[0.23,0.91,0.24,0.92,34.5,80]}}})"},
