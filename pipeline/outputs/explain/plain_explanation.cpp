@@ -205,7 +205,9 @@ class PlainText {
     const std::string name = j_.value("name", ""), address = addresses().first;
     if (!name.empty()) return address.empty() ? name : name + ", " + address;
     const std::string near = street();
-    if (!address.empty()) {
+    const bool town_alone = !address.empty() && own_street().empty() && tag("addr:housenumber").empty() &&
+                            tag("addr:housename").empty() && address == j_.value("address", "");
+    if (!address.empty() && !town_alone) {
       if (!own_street().empty() || j_.value("address", "").empty()) return address;
       const PlaceAddresses all = place_addresses(address + "; " + addresses().second);
       // A number without a street says too little: the street of its other doors, else that which it faces.
@@ -214,8 +216,11 @@ class PlainText {
       return from.empty() || address.starts_with(from) ? address : from + " " + address;
     }
     const std::string noun = use();
-    return capitalised(noun.substr(0, noun.find(','))) +
-           (near.empty() ? " without an address" : ", " + near + " (no address mapped)");
+    return capitalised(noun.substr(0, noun.find(','))) + (near.empty() ? "" : ", " + near) +
+           (town_alone ? ", " + address : "") +
+           (near.empty() && !town_alone ? " without an address"
+            : near.empty()              ? ""
+                                        : " (no address mapped)");
   }
 
   std::string tag(const char* key) const { return j_.contains("tags") ? j_.at("tags").value(key, "") : std::string(); }
