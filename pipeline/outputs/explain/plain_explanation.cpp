@@ -1,11 +1,13 @@
 #include "pipeline/outputs/explain/plain_explanation.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -289,7 +291,8 @@ class PlainText {
       out_.lines.push_back(
           "Without a body of its own: other buildings of the map cover its outline, and they were built.");
     add("What it is: " + what_noun() + ".");
-    const std::vector<std::string> notes = note_texts({"notice", "fallback", "reported"});
+    std::vector<std::string> notes = note_texts({"notice", "fallback", "reported"});
+    if (code == "OUTLINE_INCOMPLETE") std::erase(notes, std::string(consequence_words("MEMBERS_MISSING")));  // the same
     if (state == "reported" && !notes.empty())
       out_.lines.push_back(fmt::format("What happened: {}.", fmt::join(notes, "; ")));
     out_.lines.push_back(remedy_words(state, code));
@@ -457,7 +460,7 @@ class PlainText {
     constexpr std::size_t kMostShapes = 3;
     const std::size_t shown = std::min(shapes.size(), kMostShapes);
     std::string line =
-        "Roof: " + and_list(std::vector(shapes.begin(), shapes.begin() + static_cast<std::ptrdiff_t>(shown)));
+        fmt::format("Roof: {}", fmt::join(shapes.begin(), shapes.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
     if (shapes.size() > shown) line += " and others";
     if (const std::string given = v_.given("roof_shape"); !given.empty() && !adapted)
       line += ", " + given;
@@ -772,7 +775,7 @@ class PlainText {
 /// Of a row of report.json.
 PlainExplanation row_text(const Json& row) {
   PlainExplanation out;
-  const std::string id = row.value("id", ""), state = row.value("state", ""), code = row.value("code", ""),
+  const std::string id = row.at("id"), state = row.at("state"), code = row.value("code", ""),
                     related = row.value("related", "");
   const std::string what = row.value("kind", "") == "building" ? "A building" : "A part of a building";
   const std::string ask = related.empty() ? "" : " (ask for " + related + ")";

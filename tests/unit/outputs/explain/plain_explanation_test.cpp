@@ -297,7 +297,7 @@ TEST(PlainExplanation, OutbuildingsHaveNoStyleOfHouses) {
 }
 
 TEST(PlainExplanation, DamageIsAnError) {
-  for (const char* line : {"", "{", "[]", R"({"id":"w1","bodies":[]})"})
+  for (const char* line : {"", "{", "[]", "{}", R"({"id":"w1","bodies":[]})"})
     EXPECT_ANY_THROW(plain_explanation(line)) << line;
 }
 
