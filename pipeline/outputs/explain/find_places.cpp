@@ -26,7 +26,7 @@ constexpr std::size_t kLeastBeginning = 3;
 constexpr std::size_t kPostcode = 4;
 
 /// Kinds of answers, the best first.
-enum class Answer { whole, beside, words };
+enum class Answer { whole, half, beside, words };
 
 template <class Range, class Value>
 bool holds(const Range& range, const Value& value) {
@@ -133,22 +133,25 @@ class Search {
     const auto add = [&](std::string text) {
       if (out.size() < kMostNearest && !holds(out, text)) out.push_back(std::move(text));
     };
-    for (const auto& [key, near] : near_) {
-      if (wanted == words_.end() || near.numbers.empty()) {
-        add(near.shown);
-        continue;
-      }
-      std::vector<std::string> numbers(near.numbers.begin(), near.numbers.end());
-      const auto away = [&](const std::string& n) {
-        return std::tuple(n != *wanted, std::labs(first_number(n) - first_number(*wanted)));
-      };
-      std::stable_sort(numbers.begin(), numbers.end(),
-                       [&](const std::string& a, const std::string& b) { return away(a) < away(b); });
-      // The right street without this number: its next houses. Another street: its own house of this number alone.
-      const std::size_t most = key.first == 0 ? kMostNearest : 1;
-      for (std::size_t i = 0; i < std::min(most, numbers.size()); ++i) add(near.shown + " " + numbers[i]);
-      if (key.first == 0) break;
+    if (wanted == words_.end()) {
+      for (const auto& [key, near] : near_) add(near.shown);
+      return out;
     }
+    for (const auto& [key, near] : near_) {
+      std::vector<std::string> numbers(near.numbers.begin(), near.numbers.end());
+      if (key.first == 0 && !numbers.empty()) {  // the right street without this number: its next houses
+        std::stable_sort(numbers.begin(), numbers.end(), [&](const std::string& a, const std::string& b) {
+          return std::labs(first_number(a) - first_number(*wanted)) <
+                 std::labs(first_number(b) - first_number(*wanted));
+        });
+        for (const std::string& number : numbers) add(near.shown + " " + number);
+        return out;
+      }
+      for (const std::string& number : numbers)  // another street: its house of this number
+        if (match_numbers(*wanted, number) == NumberMatch::same) add(near.shown + " " + number);
+    }
+    if (out.empty())
+      for (const auto& [key, near] : near_) add(near.shown);
     return out;
   }
 
@@ -185,7 +188,9 @@ class Search {
       for (const std::string& w : wanted)
         for (const std::string& n : address.numbers) match = std::max(match, match_numbers(w, n));
       if (match == NumberMatch::none) continue;
-      c.answer = match == NumberMatch::same ? Answer::whole : Answer::beside;
+      c.answer = match == NumberMatch::same   ? Answer::whole
+                 : match == NumberMatch::half ? Answer::half
+                                              : Answer::beside;
       offer(std::move(c));
     }
   }

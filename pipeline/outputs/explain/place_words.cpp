@@ -171,6 +171,10 @@ PlaceAddresses place_addresses(std::string_view text) {
     if (parts.empty()) continue;
     std::vector<std::string> words = place_words(parts[0]);
     PlaceAddress address;
+    if (words.size() == 1 && all_digits(words[0]) && words[0].size() >= kPostcodeDigits) {  // a postcode alone
+      out.locality.push_back(words[0]);
+      continue;
+    }
     if (!words.empty() && is_number(words.back())) {
       address.numbers.push_back(words.back());
       words.pop_back();
@@ -204,10 +208,9 @@ PlaceAddresses place_addresses(std::string_view text) {
 
 NumberMatch match_numbers(std::string_view wanted, std::string_view there) {
   if (wanted == there) return NumberMatch::same;
-  // Two numbers of one house: of the quarter and of the street (Prague).
   if (const std::vector<std::string> both = pieces_of(there, "/"); both.size() > 1 && all_digits(both[1]))
     for (const std::string& one : both)
-      if (one == wanted) return NumberMatch::same;
+      if (one == wanted) return NumberMatch::half;
   const auto range = range_of(there), wanted_range = range_of(wanted);
   const long number = first_number(there), wanted_number = first_number(wanted);
   if (range && !wanted_range && within(*range, wanted_number)) return NumberMatch::beside;

@@ -30,8 +30,9 @@ struct PlaceAddresses {
 /// \param text  a field of explain/places.tsv: "Arkonaplatz 5, 10435 Berlin; Swinemünder Straße 12"
 PlaceAddresses place_addresses(std::string_view text);
 
-enum class NumberMatch { none, beside, same };
-/// `beside`: the same but for its letter, or within a range: "5" and "5a", "5" and "3-7".
+enum class NumberMatch { none, beside, half, same };
+/// `half`: one of two numbers that a house has, "45" of "1234/45" (Prague), "39" of "39/40". `beside`: the same but for its letter,
+/// or within a range: "5" and "5a", "5" and "3-7".
 NumberMatch match_numbers(std::string_view wanted, std::string_view there);
 
 /// The first number of a word: 5 of "5a" and of "5-7"; 0 where there is none.

@@ -1,11 +1,13 @@
 #include "pipeline/outputs/explain/plain_explanation.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -205,7 +207,9 @@ class PlainText {
     const std::string name = j_.value("name", ""), address = addresses().first;
     if (!name.empty()) return address.empty() ? name : name + ", " + address;
     const std::string near = street();
-    if (!address.empty()) {
+    const bool town_alone = !address.empty() && own_street().empty() && tag("addr:housenumber").empty() &&
+                            tag("addr:housename").empty() && address == j_.value("address", "");
+    if (!address.empty() && !town_alone) {
       if (!own_street().empty() || j_.value("address", "").empty()) return address;
       const PlaceAddresses all = place_addresses(address + "; " + addresses().second);
       // A number without a street says too little: the street of its other doors, else that which it faces.
@@ -214,8 +218,11 @@ class PlainText {
       return from.empty() || address.starts_with(from) ? address : from + " " + address;
     }
     const std::string noun = use();
-    return capitalised(noun.substr(0, noun.find(','))) +
-           (near.empty() ? " without an address" : ", " + near + " (no address mapped)");
+    return capitalised(noun.substr(0, noun.find(','))) + (near.empty() ? "" : ", " + near) +
+           (town_alone ? ", " + address : "") +
+           (near.empty() && !town_alone ? " without an address"
+            : near.empty()              ? ""
+                                        : " (no address mapped)");
   }
 
   std::string tag(const char* key) const { return j_.contains("tags") ? j_.at("tags").value(key, "") : std::string(); }
@@ -284,7 +291,8 @@ class PlainText {
       out_.lines.push_back(
           "Without a body of its own: other buildings of the map cover its outline, and they were built.");
     add("What it is: " + what_noun() + ".");
-    const std::vector<std::string> notes = note_texts({"notice", "fallback", "reported"});
+    std::vector<std::string> notes = note_texts({"notice", "fallback", "reported"});
+    if (code == "OUTLINE_INCOMPLETE") std::erase(notes, std::string(consequence_words("MEMBERS_MISSING")));  // the same
     if (state == "reported" && !notes.empty())
       out_.lines.push_back(fmt::format("What happened: {}.", fmt::join(notes, "; ")));
     out_.lines.push_back(remedy_words(state, code));
@@ -452,7 +460,7 @@ class PlainText {
     constexpr std::size_t kMostShapes = 3;
     const std::size_t shown = std::min(shapes.size(), kMostShapes);
     std::string line =
-        "Roof: " + and_list(std::vector(shapes.begin(), shapes.begin() + static_cast<std::ptrdiff_t>(shown)));
+        fmt::format("Roof: {}", fmt::join(shapes.begin(), shapes.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
     if (shapes.size() > shown) line += " and others";
     if (const std::string given = v_.given("roof_shape"); !given.empty() && !adapted)
       line += ", " + given;
@@ -767,7 +775,7 @@ class PlainText {
 /// Of a row of report.json.
 PlainExplanation row_text(const Json& row) {
   PlainExplanation out;
-  const std::string id = row.value("id", ""), state = row.value("state", ""), code = row.value("code", ""),
+  const std::string id = row.at("id"), state = row.at("state"), code = row.value("code", ""),
                     related = row.value("related", "");
   const std::string what = row.value("kind", "") == "building" ? "A building" : "A part of a building";
   const std::string ask = related.empty() ? "" : " (ask for " + related + ")";

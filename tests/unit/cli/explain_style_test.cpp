@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "pipeline/base/error.h"
 #include "pipeline/cli/explain_command.h"
 #include "styles/classify/features.h"
 
@@ -62,8 +64,8 @@ Json house() {
 TEST(ExplainStyle, BeginsWithASentence) {
   EXPECT_THAT(style_text(house(), false),
               testing::StartsWith("\nIts style, and why\n  Gr\u00fcnderzeit house (82 %), sub-style gz_mk_front (64 "
-                                  "%): a street-side house of 1840 to 1918 with\n"
-                                  "  a composed front. Or else: modern (13 %), tenement (5 %).\n"
+                                  "%): a street-side house of 1840 to 1918 with a\n"
+                                  "  composed front. Or else: modern (13 %), tenement (5 %).\n"
                                   "  Era: 1840 to 1918 (91 %), 1919 to 1945 (6 %), before 1840 (3 %).\n"
                                   "  Its quarter: perimeter block (97 %), old town (3 %).\n"));
 }
@@ -221,6 +223,22 @@ TEST(ExplainStyle, StandsInTheExplanation) {
   EXPECT_EQ(line_with(text, "  preset"), "no line with   preset") << "nothing is known";
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 102u) << line;
+}
+
+TEST(PlainText, IsWrappedByLettersAndCannotSteerTheTerminal) {
+  outputs::FoundExplanation f = found(nullptr);
+  Json j = Json::parse(f.json);
+  j["name"] = "Улица\u009b31m Ленина\n  forged";
+  f.json = j.dump();
+  const std::string text = plain_text(f);
+  EXPECT_THAT(text, testing::StartsWith("Улица\uFFFD31m Ленина   forged\n\n  What it is: "));
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_LE(std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xC0) != 0x80; }), 100) << line;
+  f.json = "{}";
+  EXPECT_THROW(plain_text(f), base::InputError) << "no line of an explanation";
+  f.json = "{\"id\":\"w7\",\"bodies\":[]}";
+  EXPECT_THROW(plain_text(f), base::InputError);
 }
 
 TEST(ExplainStyle, DamageIsNamed) {

@@ -67,8 +67,8 @@ TEST(PlaceWords, AreTheSameHoweverAStreetIsWritten) {
 
 TEST(PlaceWords, NumbersMatch) {
   EXPECT_EQ(match_numbers("5", "5"), NumberMatch::same);
-  EXPECT_EQ(match_numbers("45", "1234/45"), NumberMatch::same);
-  EXPECT_EQ(match_numbers("1234", "1234/45"), NumberMatch::same);
+  EXPECT_EQ(match_numbers("45", "1234/45"), NumberMatch::half);
+  EXPECT_EQ(match_numbers("1234", "1234/45"), NumberMatch::half);
   EXPECT_EQ(match_numbers("5", "5a"), NumberMatch::beside);
   EXPECT_EQ(match_numbers("5a", "5"), NumberMatch::beside);
   EXPECT_EQ(match_numbers("5", "3-7"), NumberMatch::beside);
@@ -166,6 +166,7 @@ TEST_F(FindPlaces, WhatMayHaveBeenMeant) {
   EXPECT_THAT(nearest("Arkonaplatz 200"),
               ElementsAre("Arkonaplatz 20", "Arkonaplatz 7-11", "Arkonaplatz 5", "Arkonaplatz 5a"))
       << "the nearest numbers of the right street";
+  EXPECT_THAT(nearest("Arkonplaz 12"), ElementsAre("Arkonaplatz")) << "it has no such number";
   EXPECT_THAT(nearest("Xylophonweg 1"), IsEmpty());
   EXPECT_THAT(nearest(""), IsEmpty());
   EXPECT_THAT(ids(""), IsEmpty());
@@ -192,6 +193,15 @@ TEST_F(FindPlaces, FilesThatAreGoneOrDamaged) {
   EXPECT_THAT(error(), ::testing::HasSubstr("--no-explain"));
   std::filesystem::remove(folder_ + "/build.json");
   EXPECT_THAT(error(), ::testing::HasSubstr("is no build"));
+}
+
+TEST_F(FindPlaces, AWholeNumberBeforeAHalfOneBeforeOneBeside) {
+  write("areas/11/5/6/explain/places.tsv", line("w1", "Weg 1/5") + line("w2", "Weg 5") + line("w3", "Weg 5a") +
+                                               line("w4", "34122") + line("w5", "Weg 7/9") + line("w6", "Weg 9a"));
+  EXPECT_THAT(ids("Weg 5"), ElementsAre("w2"));
+  EXPECT_THAT(ids("Weg 9"), ElementsAre("w5"));
+  EXPECT_TRUE(find("Weg 9").exact);
+  EXPECT_THAT(ids("Weg 5, 34122"), ElementsAre("w2")) << "the postcode of another house";
 }
 
 TEST_F(FindPlaces, ANumberWithoutAStreetTakesTheNextOne) {

@@ -230,6 +230,16 @@ TEST(PlainExplanation, OtherDoorsAreToldOnce) {
   EXPECT_THAT(text_of(j), HasSubstr("; also Arkonaplatz 9 and 11, Lange Straße 12."));
 }
 
+TEST(PlainExplanation, ATownAloneIsNoAddress) {
+  Json j = house();
+  j["address"] = "İstanbul";
+  j["tags"] = {{"addr:city", "İstanbul"}};
+  j["edges"][0].erase("points"), j["edges"][1].erase("points");
+  EXPECT_EQ(plain_explanation(j.dump()).title, "Residential building, Arkonaplatz, İstanbul (no address mapped)");
+  j.erase("edges");
+  EXPECT_EQ(plain_explanation(j.dump()).title, "Residential building, İstanbul");
+}
+
 TEST(PlainExplanation, PartsAndDuplicatesAreToldFirst) {
   Json j = house();
   Json part = j["bodies"][0];
@@ -287,7 +297,7 @@ TEST(PlainExplanation, OutbuildingsHaveNoStyleOfHouses) {
 }
 
 TEST(PlainExplanation, DamageIsAnError) {
-  for (const char* line : {"", "{", "[]", R"({"id":"w1","bodies":[]})"})
+  for (const char* line : {"", "{", "[]", "{}", R"({"id":"w1","bodies":[]})"})
     EXPECT_ANY_THROW(plain_explanation(line)) << line;
 }
 
