@@ -1,11 +1,13 @@
 // The plan of a neighbourhood: what each wall segment of an outline faces, in colours.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "pipeline/model/building.h"
 #include "pipeline/model/region.h"
 #include "pipeline/picture/plan.h"
+#include "pipeline/picture/sheet.h"
 
 namespace blockrand::picture {
 
@@ -38,6 +40,9 @@ PlanBox box_of(std::span<const PlanTile> tiles, double margin = 20);
 /// Draws tiles, in this order for all of them: streets, courtyards pale green, buildings light grey, borders of blocks as
 /// thin lines, edges in the colours of model/wall_segment_colours.h along the inside of their walls.
 void draw(Plan& plan, std::span<const PlanTile> tiles);
+
+/// A legend of what draw() paints within a box, as it occurs: walls by what they face, then areas.
+std::vector<LegendEntry> legend_of(std::span<const PlanTile> tiles, const PlanBox& box);
 
 /// The colours of draw() besides those of edges, for legends.
 inline constexpr model::Colour kPlanPaper{250, 249, 246}, kPlanStreet{226, 222, 216}, kPlanBuilding{222, 219, 214},

@@ -81,6 +81,10 @@ ReportFacts report_facts(const OutputContext& context, const FinishedBuild& buil
   return f;
 }
 
+PlanWords plan_words(const OutputContext& context, std::uint64_t buildings) {
+  return {context.name, about_words(buildings, context.data_time, context.crs), attribution(context), generator()};
+}
+
 /// What a tile gives to the page.
 struct TileShare {
   ReportTile page;
@@ -118,7 +122,8 @@ class ReportOutput : public OutputOf<TileShare> {
   }
   /// The page lists the files of all outputs.
   void conclude(const FinishedBuild& build) override {
-    PlanSheet plan = draw_plan(std::move(plans_), context_.context, plan_choice_, context_.memo);
+    PlanSheet plan = draw_plan(std::move(plans_), context_.context, plan_choice_, context_.projection,
+                               plan_words(context_, page_.buildings_built()), context_.memo);
     if (!plan.png.empty()) build.files.push_back(context_.folder.write("plan.png", plan.png));
     std::ranges::sort(build.files, {}, &base::PublishedFile::path);
     ReportFacts facts = report_facts(context_, build, page_);
