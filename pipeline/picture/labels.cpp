@@ -18,6 +18,8 @@ using Box = std::array<Point2, 4>;
 constexpr double kGoesOn = 0.77;    // cosine: two pieces that bend more are two lines (40 degrees)
 constexpr double kBend = 0.30;      // em: how far a line may leave the straight one below its name
 constexpr double kNeed = 0.75;      // em: a line is longer than its name by that
+constexpr double kCovered = 1.5;    // em of bend that it is worth to cover nothing
+constexpr double kSmaller = 0.25;   // em of bend that the full size is worth
 constexpr double kMiddle = 0.0012;  // em of bend that a px from the middle of the line is worth
 
 double length_of(Point2 v) { return std::sqrt(v.x * v.x + v.y * v.y); }
@@ -195,6 +197,21 @@ void add_places(const Line& line, const std::string& name, double size, double w
   }
 }
 
+/// What a label would cover, 0 to 1: on four lines along it, but not on the middle one, where borders of blocks run.
+double covered(const Label& label, const LabelOptions& options) {
+  if (!options.covers) return 0;
+  const double step = label.size / 4;
+  const int steps = std::max(1, static_cast<int>(label.width / step));
+  double sum = 0;
+  for (const double across : {-0.42, -0.25, 0.25, 0.42})
+    for (int i = 0; i <= steps; ++i) {
+      const double along = label.width * (static_cast<double>(i) / steps - 0.5), off = across * label.size;
+      sum += options.covers(static_cast<int>(label.middle.x + along * label.direction.x - off * label.direction.y),
+                            static_cast<int>(label.middle.y + along * label.direction.y + off * label.direction.x));
+    }
+  return sum / (4.0 * (steps + 1));
+}
+
 struct Street {
   int rank = 0;
   double length = 0;
@@ -289,9 +306,11 @@ std::vector<Label> place_labels(std::span<const NamedLine> lines, int width, int
       const double size = options.size * times * smaller, text = letters.width(street.name, size);
       std::vector<Place> found;
       for (const Line& line : street.lines) add_places(line, street.name, size, text, found);
-      std::stable_sort(found.begin(), found.end(), [](const Place& a, const Place& b) { return a.cost < b.cost; });
+      for (Place& place : found) place.cost += kCovered * covered(place.label, options) + (smaller < 1 ? kSmaller : 0);
       std::move(found.begin(), found.end(), std::back_inserter(places[s]));
     }
+    std::stable_sort(places[s].begin(), places[s].end(),
+                     [](const Place& a, const Place& b) { return a.cost < b.cost; });
   }
   // Every name once, before any twice.
   std::vector<std::vector<Point2>> named(streets.size());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,10 +22,12 @@ struct NamedLine {
 struct LabelOptions {
   double size = 16;                        ///< px an em, of the lowest rank
   std::vector<double> of_rank = {1.2, 1};  ///< times `size`; the last one is that of all ranks behind it
-  double smaller = 0.8;                    ///< times that, where there is no room otherwise
+  double smaller = 0.8;                    ///< times that, where there is no room otherwise or much would be covered
   double apart = 900;                      ///< px between two labels of one name; 0: one label each
   double margin = 6;                       ///< px from the border of the picture
   double between = 3;                      ///< px between labels
+  /// How much it harms to write on a pixel, 0 to 1; empty: not at all. Names move along their lines to where it harms least.
+  std::function<double(int x, int y)> covers = {};
 };
 
 /// A name in one straight line.

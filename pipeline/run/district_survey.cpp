@@ -189,7 +189,7 @@ DistrictView show_districts(const DistrictSurvey& survey, const RuleSets& book, 
   std::vector<std::string> labels;
 
   layer_file::LayerSpec layer{"districts", layer_file::GeometryKind::multi_polygon, columns(),
-                              "What district rules choose for each building"};
+                              std::string("What district rules choose for each building. ") + outputs::kAttribution};
   layer_file::LayerFile file(folder.staging_path() + "/districts.gpkg",
                              {survey.located.crs.authority_code, survey.located.extract.data_time}, {layer});
   layer_file::CellTable table;
@@ -244,6 +244,7 @@ DistrictView show_districts(const DistrictSurvey& survey, const RuleSets& book, 
         view.idle_rules.push_back(name);
     }
   nlohmann::ordered_json j;
+  j["attribution"] = outputs::kAttribution;
   j["extract"] = survey.located.extract.file;
   j["data_time"] = survey.located.extract.data_time;
   j["buildings"] = view.buildings;

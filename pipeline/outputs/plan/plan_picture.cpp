@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/base/text.h"
@@ -28,7 +29,8 @@ constexpr double kFinest = 8;        // pixels per metre: more shows nothing mor
 
 constexpr model::Colour kSheetPaper{255, 255, 255}, kNameInk{45, 42, 60};
 /// Names of streets: as high as fits between two rows of houses, within a share of the longer side of the map.
-constexpr double kNameHeight = 13;  // m an em
+constexpr double kNameHeight = 13;       // m an em
+constexpr int kPale = 220, kGrey = 200;  // brightness: buildings have 211
 constexpr double kLeastName = 0.0092, kLargestName = 0.0155;
 
 picture::PlanBox cropped(const picture::PlanBox& box, model::Point2 middle) {
@@ -171,6 +173,14 @@ void write_names(picture::Plan& plan, std::span<const picture::NamedLine> street
   options.apart = 0.4 * side;
   options.margin = 0.3 * options.size;
   options.between = 0.2 * options.size;
+  options.covers = [&](int x, int y) {
+    if (x < 0 || y < 0 || x >= width || y >= height) return 0.0;
+    const std::uint8_t* const p = std::as_const(plan).image().pixel(x, y);
+    // Paper, streets, courtyards and what lies between them are pale, buildings less so, walls strong: they are what the plan
+    // is about.
+    const int bright = (p[0] + p[1] + p[2]) / 3;
+    return bright >= kPale ? 0.0 : bright >= kGrey ? 0.5 : 1.0;
+  };
   std::vector<picture::NamedLine> lines(streets.begin(), streets.end());
   for (picture::NamedLine& line : lines)
     for (model::Point2& p : line.points) p = plan.pixel_of(p);
@@ -249,8 +259,8 @@ PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const context::Context
                           .attribution = words.attribution,
                           .generator = words.generator};
   if (part)
-    text.below_title.push_back(fmt::format("Of the build this sheet shows {:.0f} by {:.0f} m where it is densest.",
-                                           box.width(), box.height()));
+    text.below_title.push_back(
+        fmt::format("This sheet shows {:.0f} by {:.0f} m of it, where it is densest.", box.width(), box.height()));
   const std::vector<picture::NamedLine> streets = named_streets(context, box);
   auto out = base::remembered<PlanSheet>(
       memo, "plan",

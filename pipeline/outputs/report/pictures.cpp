@@ -10,6 +10,7 @@
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/text.h"
 #include "pipeline/georef/tiles.h"
+#include "pipeline/picture/lettering.h"
 #include "pipeline/picture/render.h"
 
 namespace blockrand::outputs {
@@ -239,16 +240,17 @@ std::string Pictures::note() const {
                      base::with_thousands(plan_.buildings));
 }
 
-std::vector<outputs::ReportPicture> Pictures::take(int workers, const base::Memo* memo) {
+std::vector<outputs::ReportPicture> Pictures::take(int workers, const base::Memo* memo, std::string_view attribution) {
   if (buildings_.empty()) return {};
   auto out = base::remembered<std::vector<outputs::ReportPicture>>(
-      memo, "pictures", [&](base::Packer& packer) { packer << scene_ << buildings_; }, [&] { return shoot(workers); });
+      memo, "pictures", [&](base::Packer& packer) { packer << scene_ << buildings_ << attribution; },
+      [&] { return shoot(workers, attribution); });
   scene_ = picture::Scene(plan_.origin);
   buildings_ = {};
   return out;
 }
 
-std::vector<outputs::ReportPicture> Pictures::shoot(int workers) {
+std::vector<outputs::ReportPicture> Pictures::shoot(int workers, std::string_view attribution) {
   std::vector<outputs::ReportPicture> out;
   lay_ground();
 
@@ -282,8 +284,9 @@ std::vector<outputs::ReportPicture> Pictures::shoot(int workers) {
       shots.size(), std::min<int>(workers, 2), shots.size(),
       [&](std::size_t i) {
         const Shot& shot = shots[i];
-        out[i] = {picture::png(picture::render(scene_, shot.camera, shot.options)), shot.options.width,
-                  shot.options.height, shot.caption};
+        picture::Image image = picture::render(scene_, shot.camera, shot.options);
+        picture::sign(image, attribution);
+        out[i] = {picture::png(image), shot.options.width, shot.options.height, shot.caption};
       },
       [](std::size_t) {});
   return out;

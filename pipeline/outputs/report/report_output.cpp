@@ -42,6 +42,7 @@ ReportFacts report_facts(const OutputContext& context, const FinishedBuild& buil
   ReportFacts f;
   f.name = context.name;
   f.data_time = context.data_time;
+  f.attribution = attribution(context);
   f.program_version = base::kVersion;
   f.crs_code = context.crs.authority_code;
   f.crs_name = context.crs.name;
@@ -130,7 +131,7 @@ class ReportOutput : public OutputOf<TileShare> {
     if (!plan.png.empty()) facts.context.plan = std::move(plan.in_report);
     facts.context.plan_note = std::move(plan.note);
     facts.pictures_note = pictures_.note();
-    facts.pictures = pictures_.take(context_.workers, context_.memo);
+    facts.pictures = pictures_.take(context_.workers, context_.memo, attribution(context_));
     build.files.push_back(context_.folder.write("report.html", page_.html(facts)));
   }
 
