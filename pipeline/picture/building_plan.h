@@ -45,7 +45,7 @@ void draw(Plan& plan, std::span<const PlanTile> tiles);
 std::vector<LegendEntry> legend_of(std::span<const PlanTile> tiles, const PlanBox& box);
 
 /// The colours of draw() besides those of edges, for legends.
-inline constexpr model::Colour kPlanPaper{250, 249, 246}, kPlanStreet{237, 231, 214}, kPlanBuilding{214, 211, 208},
+inline constexpr model::Colour kPlanPaper{250, 249, 246}, kPlanStreet{237, 231, 214}, kPlanBuilding{220, 217, 213},
     kPlanCourtyard{226, 242, 222}, kPlanBlock{150, 120, 170};
 
 }  // namespace blockrand::picture

@@ -184,7 +184,7 @@ void add_places(const Line& line, const std::string& name, double size, double w
   const double need = width + kNeed * size;
   if (measured.length() < need) return;
   const double step = std::max(size, need / 6), room = measured.length() - need;
-  const int steps = static_cast<int>(room / step);
+  const int steps = 2 * static_cast<int>(room / step / 2);  // one of them is the middle
   for (int i = 0; i <= steps; ++i) {
     const double from = steps > 0 ? room * i / steps : room / 2;
     const auto straight = measured.straight(from, from + need);
@@ -223,8 +223,11 @@ std::vector<Street> streets_of(std::span<const NamedLine> named, int width, int 
   std::map<std::string, Street> by_name;
   for (const NamedLine& line : named) {
     if (line.name.empty()) continue;
+    // In one direction, whichever it is drawn in: where a border cuts it has the same bits.
+    Line points = line.points, turned(points.rbegin(), points.rend());
+    if (before(turned, points)) points = std::move(turned);
     std::vector<Line> inside;
-    add_inside(line.points, width, height, inside);
+    add_inside(points, width, height, inside);
     if (inside.empty()) continue;
     const auto [at, is_new] = by_name.try_emplace(line.name);
     Street& street = at->second;

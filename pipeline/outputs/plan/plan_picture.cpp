@@ -30,7 +30,7 @@ constexpr double kFinest = 8;        // pixels per metre: more shows nothing mor
 constexpr model::Colour kSheetPaper{255, 255, 255}, kNameInk{45, 42, 60};
 /// Names of streets: as high as fits between two rows of houses, within a share of the longer side of the map.
 constexpr double kNameHeight = 13;       // m an em
-constexpr int kPale = 220, kGrey = 200;  // brightness: buildings have 211
+constexpr int kPale = 220, kGrey = 200;  // brightness: buildings have 217
 constexpr double kLeastName = 0.0092, kLargestName = 0.0155;
 
 picture::PlanBox cropped(const picture::PlanBox& box, model::Point2 middle) {

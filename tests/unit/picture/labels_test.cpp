@@ -39,7 +39,9 @@ TEST(Labels, AreNeverUpsideDown) {
     const Point2 r = labels[0].direction;
     EXPECT_NEAR(r.x * r.x + r.y * r.y, 1, 1e-12);
     EXPECT_GT(r.x, -2e-3) << degrees;
-    if (std::fabs(r.x) < 1e-6) EXPECT_LT(r.y, 0) << "upright: read from below";
+    if (std::fabs(r.x) < 1e-6) {
+      EXPECT_LT(r.y, 0) << "upright: read from below";
+    }
   }
 }
 
