@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -164,6 +165,16 @@ std::vector<picture::NamedLine> named_streets(const context::ContextExtract& con
   return out;
 }
 
+/// Takes out what would be a row of boxes. \returns how many names
+std::size_t drop_unwritable(std::vector<picture::NamedLine>& sorted, const picture::Lettering& letters) {
+  std::set<std::string_view> names;
+  for (const picture::NamedLine& line : sorted)
+    if (!letters.can_write(line.name)) names.insert(line.name);
+  const std::size_t count = names.size();
+  std::erase_if(sorted, [&](const picture::NamedLine& line) { return !letters.can_write(line.name); });
+  return count;
+}
+
 void write_names(picture::Plan& plan, std::span<const picture::NamedLine> streets, const picture::Lettering& letters,
                  std::span<const std::array<model::Point2, 4>> taken) {
   const int width = plan.image().width, height = plan.image().height, side = std::max(width, height);
@@ -261,7 +272,7 @@ PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const context::Context
   if (part)
     text.below_title.push_back(
         fmt::format("This sheet shows {:.0f} by {:.0f} m of it, where it is densest.", box.width(), box.height()));
-  const std::vector<picture::NamedLine> streets = named_streets(context, box);
+  std::vector<picture::NamedLine> streets = named_streets(context, box);
   auto out = base::remembered<PlanSheet>(
       memo, "plan",
       [&](base::Packer& packer) {
@@ -271,6 +282,10 @@ PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const context::Context
       [&] {
         const picture::Lettering letters;
         PlanSheet drawn;
+        if (const std::size_t names = drop_unwritable(streets, letters); names > 0)
+          text.below_title.push_back(fmt::format(
+              "{} left out: in letters that this program's font lacks.",
+              names == 1 ? "The name of one street is" : fmt::format("The names of {} streets are", names)));
         picture::Plan large = drawn_map(tiles, box, kFilePixels);
         write_names(large, streets, letters, {});
         text.legend = picture::legend_of(tiles, box);
