@@ -31,6 +31,7 @@ install(FILES ${documents}/bash/blockrand DESTINATION ${CMAKE_INSTALL_DATADIR}/b
 install(FILES ${documents}/zsh/_blockrand DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 install(FILES ${documents}/fish/blockrand.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${doc_folder})
+install(FILES pipeline/picture/fonts/LICENSE.txt DESTINATION ${doc_folder} RENAME LICENSE.DejaVu)  # the program holds the font
 install(FILES samples/blockrand-viertel.osm DESTINATION ${doc_folder}/examples)
 
 set(CPACK_GENERATOR DEB TGZ)

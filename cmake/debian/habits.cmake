@@ -7,7 +7,7 @@ set(root ${CPACK_TEMPORARY_INSTALL_DIRECTORY}${CPACK_PACKAGING_INSTALL_PREFIX})
 set(doc ${root}/${CPACK_BLOCKRAND_DOC_FOLDER})
 set(man ${root}/${CPACK_BLOCKRAND_MAN_FOLDER}/man1/blockrand.1)
 
-file(REMOVE ${doc}/LICENSE)
+file(REMOVE ${doc}/LICENSE ${doc}/LICENSE.DejaVu)
 file(COPY_FILE ${CMAKE_CURRENT_LIST_DIR}/copyright ${doc}/copyright)
 file(RENAME ${doc}/CHANGELOG.md ${doc}/changelog)
 # SOURCE_DATE_EPOCH, where it is set, is the time that this gives.

@@ -9,8 +9,10 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "pipeline/base/attribution.h"
 #include "pipeline/base/error.h"
 #include "pipeline/picture/image.h"
+#include "pipeline/picture/lettering.h"
 
 namespace blockrand::cli {
 namespace {
@@ -74,6 +76,13 @@ picture::Image piece_of(const std::string& overlay, const Json& imagery) {
   return enlarged(piece, std::clamp(kLeastSide / std::max(piece.width, piece.height), 1, kMostTimes));
 }
 
+/// Whose data the pictures of a build show.
+std::string attribution_in(const std::string& folder) {
+  std::ifstream in(folder + "/imagery.json", std::ios::binary);
+  const Json j = Json::parse(in, nullptr, false);
+  return j.is_object() ? j.value("attribution", base::kAttribution) : base::kAttribution;
+}
+
 /// Through a file beside it: what is there under its name is whole.
 void write_whole(const std::string& file, const std::string& bytes) {
   const std::string beside = file + kBeside;
@@ -109,7 +118,9 @@ void write_chip(const std::string& folder, const outputs::FoundExplanation& foun
     if (fs::exists(there, error)) throw base::UsageError(there + " is there already. Name another file, or remove it");
   std::string bytes;
   try {
-    bytes = picture::png(piece_of(overlay, Json::parse(found.json).at("imagery")));
+    picture::Image piece = piece_of(overlay, Json::parse(found.json).at("imagery"));
+    picture::sign(piece, attribution_in(folder));
+    bytes = picture::png(piece);
   } catch (const std::exception& wrong) {
     throw base::InputError(overlay, what, wrong.what(), "Build again; 'blockrand validate' lists all damage");
   }

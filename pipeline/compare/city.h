@@ -99,6 +99,7 @@ struct CityFile {
 struct City {
   std::string name;  ///< for people: the path as given
   std::vector<CityFile> files;
+  std::string attribution;        ///< whose data it shows, where it is a build of ours; empty: not known
   std::string crs;                ///< common to both cities: "EPSG:25833"
   Point2 origin;                  ///< of all x and y in it, m in `crs`; common to both cities
   std::string height_reference;   ///< for people: "EPSG:5783", "above local ground", "unknown" …

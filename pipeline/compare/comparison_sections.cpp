@@ -339,8 +339,13 @@ std::string unmatched_section(const Comparison& c) {
   return out + "</section>\n";
 }
 
-std::string foot_section(const OptionList& options) {
+std::string foot_section(const Comparison& comparison, const OptionList& options) {
   std::string out = "<footer>";
+  for (const auto& [what, city] :
+       {std::pair("Model", &comparison.model), std::pair("Reference", &comparison.reference)})
+    out += fmt::format("{}: {}.<br/>", what,
+                       city->attribution.empty() ? "whose data it is and under which licence, its own source says"
+                                                 : escaped(city->attribution));
   if (!options.empty()) {
     out += "Asked for: ";
     for (std::size_t i = 0; i < options.size(); ++i)

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <unordered_set>
 #include <utility>
@@ -9,6 +13,7 @@
 #include "importers/reference/affine_transform.h"
 #include "importers/reference/footprints.h"
 #include "importers/reference/read_model.h"
+#include "pipeline/base/attribution.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/compare/area_vector.h"
@@ -377,6 +382,28 @@ void append(City& city, City&& more, const std::optional<PlanBox>& reach, std::s
   }
 }
 
+/// Whose data a file shows: the build of ours that it lies in says so. Builds are looked at once.
+std::string attribution_of(const std::string& file, std::map<std::string, std::string>& of_builds) {
+  namespace fs = std::filesystem;
+  constexpr int kDeepest = 6;  // tiles/15/17600/12900.glb
+  std::error_code error;
+  fs::path folder = fs::absolute(file, error).parent_path();
+  for (int i = 0; i < kDeepest && !folder.empty(); ++i, folder = folder.parent_path()) {
+    const auto [found, is_new] = of_builds.try_emplace(folder.string());
+    if (is_new && fs::is_regular_file(folder / "build.json", error)) {
+      std::ifstream in(folder / "build.json", std::ios::binary);
+      const auto record = nlohmann::json::parse(in, nullptr, false);
+      if (record.is_object() && record.contains("program") && record["program"].is_object() &&
+          record["program"].value("name", "") == "blockrand")
+        found->second = record.contains("attribution") && record["attribution"].is_string()
+                            ? record["attribution"].get<std::string>()
+                            : base::kAttribution;
+    }
+    if (!found->second.empty()) return found->second;
+  }
+  return {};
+}
+
 }  // namespace
 
 geometry::PlanBox plan_box(const Building& b) {
@@ -458,6 +485,11 @@ City read_city(const std::vector<std::string>& paths, const ReadCityOptions& opt
   // In the order of their names, each once: neither how a shell lists files nor repeated ones matter.
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());
+  std::map<std::string, std::string> of_builds;
+  std::set<std::string> attributions;
+  for (const std::string& file : files) attributions.insert(attribution_of(file, of_builds));
+  attributions.erase("");
+  for (const std::string& a : attributions) city.attribution += (city.attribution.empty() ? "" : "; ") + a;
   std::set<std::string> heights;
   // Both are settled by the first file with buildings, before any after it is read.
   city.crs = options.crs;

@@ -110,12 +110,15 @@ CellTable building_rows(const Comparison& c, bool model, const std::vector<std::
 void write_geopackage(const Comparison& c, const std::string& path) {
   const std::vector<Column> match = match_columns(), building = building_columns();
   const std::string heights = ". Heights compared " + std::string(heights_text(c));
+  const auto by = [](const City& city) { return city.attribution.empty() ? "" : ". " + city.attribution; };
+  const std::string both = by(c.reference) == by(c.model) ? by(c.model) : by(c.reference) + by(c.model);
   layer_file::LayerFile file(
       path, {c.reference.crs.empty() ? c.model.crs : c.reference.crs, ""},
       {{"matches", GeometryKind::multi_polygon, match,
-        "Buildings that stand for each other: the reference's footprints with every measure" + heights},
-       {"model", GeometryKind::multi_polygon, building, "The model's footprints and what became of them"},
-       {"reference", GeometryKind::multi_polygon, building, "The reference's footprints and what became of them"}});
+        "Buildings that stand for each other: the reference's footprints with every measure" + heights + both},
+       {"model", GeometryKind::multi_polygon, building, "The model's footprints and what became of them" + by(c.model)},
+       {"reference", GeometryKind::multi_polygon, building,
+        "The reference's footprints and what became of them" + by(c.reference)}});
   file.put(0, match_rows(c, match.size()));
   file.put(1, building_rows(c, true, c.extra, "extra", building.size()));
   file.put(2, building_rows(c, false, c.missing, "missing", building.size()));

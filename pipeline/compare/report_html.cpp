@@ -62,7 +62,7 @@ std::string comparison_html(const Comparison& comparison, const OptionList& opti
           sections[i] = {};
         });
   }
-  out += "</main>\n" + foot_section(options) + "<script>";
+  out += "</main>\n" + foot_section(comparison, options) + "<script>";
   out += asset("report.js");
   out += "</script>\n</body>\n</html>\n";
   return out;

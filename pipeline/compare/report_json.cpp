@@ -48,6 +48,7 @@ Json city_json(const City& city) {
   Json files = Json::array();
   for (const CityFile& file : city.files) files.push_back(file_json(file));
   return {{"name", city.name},
+          {"attribution", city.attribution.empty() ? Json() : Json(city.attribution)},
           {"height_reference", city.height_reference},
           {"absolute_heights", city.absolute_heights},
           {"buildings", city.buildings.size()},

@@ -8,6 +8,7 @@
 #include "pipeline/compare/area_vector.h"
 #include "pipeline/compare/face_triangles.h"
 #include "pipeline/compare/heat_mesh.h"
+#include "pipeline/picture/lettering.h"
 #include "pipeline/picture/render.h"
 
 namespace blockrand::compare {
@@ -201,18 +202,21 @@ MatchPictures draw_pictures(const Comparison& comparison, const MatchResult& mat
   const double aspect = static_cast<double>(render.width) / render.height;
   const picture::Camera camera = picture::fit_perspective(points, {azimuth, 27}, aspect, 30, 0.06);
 
-  const auto shot = [&](const picture::Scene& scene, int colours) {
-    return scene.empty() ? std::string() : picture::palette_png(picture::render(scene, camera, render), colours);
+  const auto shot = [&](const picture::Scene& scene, int colours, const City& city) {
+    if (scene.empty()) return std::string();
+    picture::Image image = picture::render(scene, camera, render);
+    picture::sign(image, city.attribution);
+    return picture::palette_png(image, colours);
   };
-  out.reference = shot(of_reference, kColours);
-  out.model = shot(of_model, kColours);
+  out.reference = shot(of_reference, kColours, comparison.reference);
+  out.model = shot(of_model, kColours, comparison.model);
   render.lit = false;
   render.line_strength = 0.4;
   picture::Scene reference_heat, model_heat;
   reference.paint_heat(reference_heat, match, false, distances, options.heat_range);
   model.paint_heat(model_heat, match, true, distances, options.heat_range);
-  out.reference_heat = shot(reference_heat, kColours);
-  out.model_heat = shot(model_heat, kColours);
+  out.reference_heat = shot(reference_heat, kColours, comparison.reference);
+  out.model_heat = shot(model_heat, kColours, comparison.model);
   return out;
 }
 

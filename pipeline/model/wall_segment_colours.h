@@ -33,4 +33,12 @@ constexpr std::string_view meaning(WallSegmentKind kind) {
   return meanings[static_cast<int>(kind)];
 }
 
+/// The same in a few words, for legends in pictures.
+constexpr std::string_view short_meaning(WallSegmentKind kind) {
+  constexpr std::string_view meanings[kWallSegmentKindCount] = {
+      "not known", "to a street", "to a courtyard", "to a gap or open land", "shared with a neighbour", "passage below",
+  };
+  return meanings[static_cast<int>(kind)];
+}
+
 }  // namespace blockrand::model

@@ -10,7 +10,27 @@
 
 namespace blockrand::outputs {
 
-std::string gzip(std::string_view bytes, int level) {
+namespace {
+
+/// UTF-8 as ISO 8859-1.
+std::string latin(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if (byte < 0x80) {
+      out += text[i];
+    } else if ((byte == 0xC2 || byte == 0xC3) && i + 1 < text.size()) {
+      out += static_cast<char>((byte & 3) << 6 | (static_cast<unsigned char>(text[++i]) & 0x3F));
+    } else if (byte >= 0xC0) {
+      out += '?';
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string gzip(std::string_view bytes, int level, std::string_view comment) {
   assert(level >= 1 && level <= 9);
   z_stream stream{};
   constexpr int kGzipHeader = 16;
@@ -18,6 +38,8 @@ std::string gzip(std::string_view bytes, int level) {
     throw std::bad_alloc();
   gz_header header{};
   header.os = 255;  // "unknown": zlib's own default depends on the machine it was built for
+  std::string said = latin(comment);
+  if (!said.empty()) header.comment = reinterpret_cast<Bytef*>(said.data());
   deflateSetHeader(&stream, &header);
 
   std::string out(deflateBound(&stream, static_cast<uLong>(bytes.size())), '\0');

@@ -18,9 +18,13 @@ double bytes_per_building(const OutputOptions& options, int lod) {
 }
 
 std::string attribution(const OutputContext& context) {
+  if (!context.imagery) return kAttribution;
+  return attribution(context.imagery->images);
+}
+
+std::string attribution(std::span<const observation::ImageReceipt> images) {
   std::string text = kAttribution;
-  if (!context.imagery) return text;
-  for (const observation::ImageReceipt& image : context.imagery->images) {
+  for (const observation::ImageReceipt& image : images) {
     if (image.buildings == 0) continue;
     const importers::imagery::ImageSource& source = image.description.source;
     const std::string name = source.path.substr(source.path.find_last_of('/') + 1);

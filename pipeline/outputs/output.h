@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/base/attribution.h"
 #include "pipeline/base/memo.h"
 #include "pipeline/base/pack.h"
 #include "pipeline/base/publish.h"
@@ -150,9 +151,11 @@ double bytes_per_building(const OutputOptions& options, int lod);
 
 // ---- What several formats say alike.
 
-inline constexpr const char* kAttribution = "\u00a9 OpenStreetMap contributors, ODbL 1.0";
+using base::kAttribution;
 /// Of everything that an output was made from: the map, and the images that were looked at, with their licences.
 std::string attribution(const OutputContext& context);
+/// \param images  empty: none was looked at
+std::string attribution(std::span<const observation::ImageReceipt> images);
 std::string generator();                      ///< "Blockrand 0.1.0"
 std::string model_name(model::TileId id);     ///< "Blockrand 15/17600/12900"
 std::string tile_name(model::TileId id);      ///< "15_17600_12900"

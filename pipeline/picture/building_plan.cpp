@@ -1,7 +1,9 @@
 #include "pipeline/picture/building_plan.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
 
 #include "pipeline/geometry/wall_segment.h"
 #include "pipeline/model/wall_segment_colours.h"
@@ -74,6 +76,39 @@ void draw(Plan& plan, std::span<const PlanTile> tiles) {
     each(&PlanTile::edges, [&](const PlanEdge& e) {
       if (e.kind == kind) plan.fill(strip(e, width), model::colour_of(kind));
     });
+}
+
+std::vector<LegendEntry> legend_of(std::span<const PlanTile> tiles, const PlanBox& box) {
+  const auto meets = [&](std::span<const Point2> points) {
+    PlanBox of{1e300, 1e300, -1e300, -1e300};
+    for (const Point2 p : points)
+      of = {std::min(of.min_x, p.x), std::min(of.min_y, p.y), std::max(of.max_x, p.x), std::max(of.max_y, p.y)};
+    return of.min_x < box.max_x && of.max_x > box.min_x && of.min_y < box.max_y && of.max_y > box.min_y;
+  };
+  std::array<bool, model::kWallSegmentKindCount> walls{};
+  bool buildings = false, courtyards = false, blocks = false, streets = false;
+  const auto any = [&](const std::vector<model::Polygon>& polygons) {
+    return std::ranges::any_of(polygons, [&](const model::Polygon& p) { return meets(p.outer.points); });
+  };
+  for (const PlanTile& tile : tiles) {
+    for (const PlanEdge& e : tile.edges)
+      if (bool& seen = walls[static_cast<std::size_t>(e.kind)]; !seen) seen = meets(std::array{e.from, e.to});
+    buildings = buildings || any(tile.buildings);
+    courtyards = courtyards || any(tile.courtyards);
+    blocks = blocks || any(tile.blocks);
+    streets = streets || std::ranges::any_of(tile.streets, [&](const PlanStreet& s) { return meets(s.line); });
+  }
+  std::vector<LegendEntry> out;
+  for (int k = 0; k < model::kWallSegmentKindCount; ++k) {
+    const auto kind = static_cast<WallSegmentKind>((k + 1) % model::kWallSegmentKindCount);  // unknown last
+    if (walls[static_cast<std::size_t>(kind)])
+      out.push_back({model::colour_of(kind), "Wall: " + std::string(model::short_meaning(kind)), LegendSign::line});
+  }
+  if (buildings) out.push_back({kPlanBuilding, "Building", LegendSign::area});
+  if (courtyards) out.push_back({kPlanCourtyard, "Courtyard", LegendSign::area});
+  if (streets) out.push_back({kPlanStreet, "Street", LegendSign::area});
+  if (blocks) out.push_back({kPlanBlock, "Border of a block", LegendSign::thin_line});
+  return out;
 }
 
 }  // namespace blockrand::picture

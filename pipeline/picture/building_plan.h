@@ -1,11 +1,13 @@
 // The plan of a neighbourhood: what each wall segment of an outline faces, in colours.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "pipeline/model/building.h"
 #include "pipeline/model/region.h"
 #include "pipeline/picture/plan.h"
+#include "pipeline/picture/sheet.h"
 
 namespace blockrand::picture {
 
@@ -39,8 +41,11 @@ PlanBox box_of(std::span<const PlanTile> tiles, double margin = 20);
 /// thin lines, edges in the colours of model/wall_segment_colours.h along the inside of their walls.
 void draw(Plan& plan, std::span<const PlanTile> tiles);
 
+/// A legend of what draw() paints within a box, as it occurs: walls by what they face, then areas.
+std::vector<LegendEntry> legend_of(std::span<const PlanTile> tiles, const PlanBox& box);
+
 /// The colours of draw() besides those of edges, for legends.
-inline constexpr model::Colour kPlanPaper{250, 249, 246}, kPlanStreet{226, 222, 216}, kPlanBuilding{222, 219, 214},
+inline constexpr model::Colour kPlanPaper{250, 249, 246}, kPlanStreet{237, 231, 214}, kPlanBuilding{220, 217, 213},
     kPlanCourtyard{226, 242, 222}, kPlanBlock{150, 120, 170};
 
 }  // namespace blockrand::picture

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "pipeline/picture/lettering.h"
+
 namespace blockrand::picture {
 
 using model::Colour;
@@ -183,47 +185,28 @@ void Plan::stroke(std::span<const Point2> points, double width, Colour colour, b
   cover(contours, colour, 1);
 }
 
-/// Digits as on a pocket calculator: seven bars, from the top clockwise, then the middle one.
-void Plan::text(const char* letters, Point2 at, double size, Colour colour) {
-  constexpr std::uint8_t kBars[] = {0x3f, 0x06, 0x5b, 0x4f, 0x66, 0x6d, 0x7d, 0x07, 0x7f, 0x6f};
-  const double w = size / 2, line = size / 7;
-  for (const char* c = letters; *c != '\0'; ++c) {
-    const auto draw = [&](std::initializer_list<Point2> points) {
-      std::vector<Point2> placed;
-      for (const Point2 p : points) placed.push_back({at.x + p.x, at.y + p.y});
-      stroke(placed, line, colour);
-    };
-    if (*c >= '0' && *c <= '9') {
-      const std::uint8_t bars = kBars[*c - '0'];
-      if (bars & 1) draw({{0, size}, {w, size}});
-      if (bars & 2) draw({{w, size}, {w, size / 2}});
-      if (bars & 4) draw({{w, size / 2}, {w, 0}});
-      if (bars & 8) draw({{w, 0}, {0, 0}});
-      if (bars & 16) draw({{0, 0}, {0, size / 2}});
-      if (bars & 32) draw({{0, size / 2}, {0, size}});
-      if (bars & 64) draw({{0, size / 2}, {w, size / 2}});
-    } else if (*c == 'm') {
-      const double top = size * 0.6;
-      draw({{0, 0}, {0, top}, {w, top}, {w, 0}});
-      draw({{w, top}, {2 * w, top}, {2 * w, 0}});
-    }
-    at.x += size * 0.85;
-  }
-}
-
-double Plan::draw_scale_bar() {
-  // The longest of 1, 2, 5, 10, ... m that takes no more than a quarter of the width.
+double round_length(double most) {
   double length = 1;
   for (double step = 1; step <= 1e6; step *= 10)
     for (const double n : {1.0, 2.0, 5.0})
-      if (n * step <= box_.width() / 4) length = n * step;
-  const double pixel = 1 / scale_, x = box_.min_x + 14 * pixel, y = box_.min_y + 14 * pixel;
+      if (n * step <= most) length = n * step;
+  return length;
+}
+
+std::string length_text(double metres) {
+  return metres < 1000 ? std::to_string(static_cast<long>(metres)) + " m"
+                       : std::to_string(static_cast<long>(metres / 1000)) + " km";
+}
+
+double Plan::draw_scale_bar(double size) {
+  const double length = round_length(box_.width() / 4), unit = size / 14;  // px for a line of fourteenths
+  const double pixel = unit / scale_, x = box_.min_x + 14 * pixel, y = box_.min_y + 14 * pixel;
   const Colour ink{30, 30, 30}, halo{255, 255, 255};
-  const std::string name = std::to_string(static_cast<long>(length)) + " m";
   const Point2 bar[] = {{x, y + 7 * pixel}, {x, y}, {x + length, y}, {x + length, y + 7 * pixel}};
   stroke(bar, 6 * pixel, halo);
   stroke(bar, 2.4 * pixel, ink);
-  text(name.c_str(), {x + 6 * pixel, y + 9 * pixel}, 12 * pixel, ink);
+  Lettering().write(image_, pixel_of({x + 6 * pixel, y + 7 * pixel}), length_text(length),
+                    {.size = size, .colour = ink, .halo = 2 * unit, .halo_colour = halo});
   return length;
 }
 

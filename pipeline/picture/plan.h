@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "pipeline/model/colour.h"
@@ -39,17 +40,22 @@ class Plan {
   /// \param closed  also from the last point to the first
   void stroke(std::span<const model::Point2> points, double width, model::Colour colour, bool closed = false);
 
-  /// A bar of a round length, with that length in metres, in the lower left corner.
+  /// A bar of a round length, with that length, in the lower left corner.
+  /// \param size  px an em of the words
   /// \returns that length, m
-  double draw_scale_bar();
+  double draw_scale_bar(double size = 14);
+  /// px from the upper left corner, rows downwards.
+  model::Point2 pixel_of(model::Point2 place) const {
+    return {(place.x - box_.min_x) * scale_, (box_.max_y - place.y) * scale_};
+  }
 
   double metres_per_pixel() const { return 1 / scale_; }
   const PlanBox& box() const { return box_; }
   const Image& image() const { return image_; }
+  Image& image() { return image_; }  ///< to be written on
 
  private:
   void cover(const std::vector<std::vector<model::Point2>>& contours, model::Colour colour, double opacity);
-  void text(const char* letters, model::Point2 at, double size, model::Colour colour);
 
   PlanBox box_;
   double scale_;
@@ -58,5 +64,10 @@ class Plan {
 
 /// The largest scale, pixels per metre, at which no side of the picture is longer than `pixels`.
 double scale_for(const PlanBox& box, int pixels);
+
+/// The longest of 1, 2, 5, 10, 20, ... m that is no longer than `most`; 1 where that is less.
+double round_length(double most);
+/// "50 m", "2 km".
+std::string length_text(double metres);
 
 }  // namespace blockrand::picture

@@ -98,7 +98,8 @@ struct Overview::State {
 
   /// All buildings as one layer for GIS programs: GDAL's union of the areas' layers.
   std::string vrt() const {
-    std::string out = "<OGRVRTDataSource>\n  <OGRVRTUnionLayer name=\"buildings\">\n";
+    std::string out = "<OGRVRTDataSource>\n  <!-- " + std::string(outputs::kAttribution) +
+                      " -->\n  <OGRVRTUnionLayer name=\"buildings\">\n";
     for (const Entry& e : entries)
       if (e.has_geopackage)
         out += "    <OGRVRTLayer name=\"buildings\"><SrcDataSource relativeToVRT=\"1\">" + area_path(e.tile) +
@@ -121,6 +122,7 @@ struct Overview::State {
 
   std::string report_json(const std::vector<std::string>& unmatched) const {
     Json j;
+    j["attribution"] = outputs::kAttribution;
     j["counts"] = counts;
     j["issues"] = issues;
     j["statistics"] = statistics;
@@ -311,6 +313,7 @@ void Overview::write(base::StagedFolder& folder, const std::vector<std::string>&
   std::ranges::sort(files, {}, &base::PublishedFile::path);
   Json j;
   j["program"] = {{"name", "blockrand"}, {"version", base::kVersion}};
+  j["attribution"] = outputs::kAttribution;
   j["data"] = {{"sha256", s.data.sha256}};
   if (s.common.contains("inputs")) j["inputs"] = s.common["inputs"];
   j["data_time"] = s.data.data_time;

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "pipeline/base/assets.h"
+#include "pipeline/base/attribution.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/markup.h"
 #include "pipeline/base/sha256.h"
@@ -364,6 +365,7 @@ std::vector<Gate> gates_of(const BuildChanges& c, const RegionOptions& o, bool f
 std::string changes_json(const BuildChanges& c, const std::vector<Gate>& gates) {
   const auto hundredths = [](double v) { return std::round(v * 100) / 100; };
   Json j;
+  j["attribution"] = base::kAttribution;
   j["buildings"] = {{"before", c.before}, {"after", c.after}, {"added", c.added.size()}, {"removed", c.removed.size()}};
   j["gates"] = Json::array();
   for (const Gate& g : gates)
@@ -446,7 +448,7 @@ std::string changes_page(const std::string& title, const BuildChanges& c, const 
     rows.push_back({a.id, a.name, rounded(a.from), rounded(a.to), a.from_source, a.to_source, a.why});
   }
   table("Values", {"building", "what", "from", "to", "source before", "source now", "why"}, rows, c.attributes.size());
-  return out + "</main>\n</body>\n</html>\n";
+  return out + "<p>" + base::kAttribution + "</p>\n</main>\n</body>\n</html>\n";
 }
 
 }  // namespace blockrand::run

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "pipeline/base/attribution.h"
 #include "pipeline/base/markup.h"
 #include "pipeline/base/portable_math.h"
 #include "pipeline/layer_file/layer_file.h"
@@ -233,12 +234,14 @@ void write_changes_layers(const BuildChanges& c, const std::string& path) {
       value.end_row();
     }
   }
+  const std::string source = std::string(". ") + base::kAttribution;
   std::error_code error;
   std::filesystem::remove(path, error);
-  layer_file::LayerFile file(
-      path, {"EPSG:4326", ""},
-      {{"buildings", layer_file::GeometryKind::multi_polygon, buildings, "Buildings that differ from the build before"},
-       {"values", layer_file::GeometryKind::multi_polygon, values, "Values that differ from the build before"}});
+  layer_file::LayerFile file(path, {"EPSG:4326", ""},
+                             {{"buildings", layer_file::GeometryKind::multi_polygon, buildings,
+                               "Buildings that differ from the build before" + source},
+                              {"values", layer_file::GeometryKind::multi_polygon, values,
+                               "Values that differ from the build before" + source}});
   file.put(0, building_table);
   file.put(1, value_table);
   file.close();

@@ -10,14 +10,17 @@
 #include "pipeline/attributes/defaults.h"
 #include "pipeline/attributes/tagged_buildings.h"
 #include "pipeline/base/parallel.h"
+#include "pipeline/base/text.h"
 #include "pipeline/evidence/region_priors.h"
 #include "pipeline/footprints/load.h"
 #include "pipeline/layer_file/layer_file.h"
 #include "pipeline/layer_file/well_known_binary.h"
+#include "pipeline/outputs/output.h"
+#include "pipeline/outputs/plan/plan_picture.h"
 #include "pipeline/picture/building_plan.h"
 #include "pipeline/picture/image.h"
-#include "pipeline/picture/lettering.h"
 #include "pipeline/picture/plan.h"
+#include "pipeline/picture/sheet.h"
 
 namespace blockrand::run {
 
@@ -78,12 +81,20 @@ std::string map_png(const DistrictSurvey& survey, const std::vector<std::uint32_
   std::vector<std::pair<std::string, std::uint64_t>> order(counts.begin(), counts.end());
   std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   std::map<std::string, model::Colour> colours;
-  std::vector<std::pair<model::Colour, std::string>> legend;
+  picture::SheetText text{
+      .title = std::string(title),
+      .below_title = {outputs::about_words(buildings.size(), survey.located.extract.data_time, survey.located.crs)},
+      .legend = {},
+      .metres_per_pixel = 0,
+      .north = {},
+      .attribution = outputs::kAttribution,
+      .generator = outputs::generator()};
   for (const auto& [label, count] : order) {
     const std::size_t next = colours.size();
     const model::Colour colour = label.empty() || next >= std::size(kColours) ? kNothing : kColours[next];
     colours[label] = colour;
-    legend.emplace_back(colour, fmt::format("{} {}", label.empty() ? "none" : label, count));
+    text.legend.push_back({colour, fmt::format("{} ({})", label.empty() ? "none" : label, base::with_thousands(count)),
+                           picture::LegendSign::area});
   }
   picture::PlanTile all;
   std::vector<std::string_view> label_of;
@@ -103,8 +114,10 @@ std::string map_png(const DistrictSurvey& survey, const std::vector<std::uint32_
     plan.stroke(line.points, 7, picture::kPlanStreet);
   }
   for (std::size_t i = 0; i < all.buildings.size(); ++i) plan.fill(all.buildings[i], colours[std::string(label_of[i])]);
-  plan.draw_scale_bar();
-  return picture::palette_png(picture::with_legend(plan.image(), legend, title, picture::kPlanPaper), 128);
+  text.north =
+      outputs::north_words(survey.located.projection, {(box.min_x + box.max_x) / 2, (box.min_y + box.max_y) / 2});
+  text.metres_per_pixel = plan.metres_per_pixel();
+  return picture::palette_png(picture::sheet(plan.image(), text, picture::kPlanPaper), 128);
 }
 
 }  // namespace
@@ -176,7 +189,7 @@ DistrictView show_districts(const DistrictSurvey& survey, const RuleSets& book, 
   std::vector<std::string> labels;
 
   layer_file::LayerSpec layer{"districts", layer_file::GeometryKind::multi_polygon, columns(),
-                              "What district rules choose for each building"};
+                              std::string("What district rules choose for each building. ") + outputs::kAttribution};
   layer_file::LayerFile file(folder.staging_path() + "/districts.gpkg",
                              {survey.located.crs.authority_code, survey.located.extract.data_time}, {layer});
   layer_file::CellTable table;
@@ -231,6 +244,7 @@ DistrictView show_districts(const DistrictSurvey& survey, const RuleSets& book, 
         view.idle_rules.push_back(name);
     }
   nlohmann::ordered_json j;
+  j["attribution"] = outputs::kAttribution;
   j["extract"] = survey.located.extract.file;
   j["data_time"] = survey.located.extract.data_time;
   j["buildings"] = view.buildings;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/base/version.h"
+#include "pipeline/outputs/output.h"
 #include "pipeline/run/configuration.h"
 #include "pipeline/run/tile_choice.h"
 
@@ -181,6 +182,7 @@ Json inputs_json(const std::vector<InputFile>& inputs) {
 std::string build_json(const BuildOptions& options, const BuildRecord& r) {
   Json j;
   j["program"] = {{"name", "blockrand"}, {"version", base::kVersion}};
+  j["attribution"] = outputs::attribution(r.images);
   j["data"] = {{"sha256", r.data_sha256}};
   j["inputs"] = inputs_json(r.inputs);
   j["data_time"] = r.data_time;

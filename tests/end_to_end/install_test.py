@@ -152,7 +152,7 @@ class DebianPackage(Installed):
         self.assertRegex(self.field('Maintainer'), r'.+ <.+@.+>')
         self.assertRegex(self.field('Description'), r'^[^\n]{20,80}\n [^\n]{20,80}\n')
         depends = self.field('Depends')
-        for needed in (r'proj-data', r'libgdal\d+', r'libproj\d+', r'libgeos-c1\w*', r'libtinygltf\w+', r'libmeshoptimizer\w+', r'libxml2\w*', r'libc6'):
+        for needed in (r'proj-data', r'libgdal\d+', r'libproj\d+', r'libgeos-c1\w*', r'libtinygltf\w+', r'libmeshoptimizer\w+', r'libxml2\w*', r'libfreetype6\w*', r'libc6'):
             self.assertRegex(depends, rf'(^|, ){needed}( \(|,|$)')
         self.assertNotRegex(depends, r'-dev|libcgal', 'what only building needs')
 

@@ -56,8 +56,8 @@ class ExplainOutput : public OutputOf<ExplainedTile> {
     options.tile = tile.name;
     for (const base::PublishedFile& file : tile.files) options.files.push_back(file.path);
     Explanations explanations = explain(tile.region, options);
-    tile.files.push_back(
-        context_.folder.write("explain/" + tile.name + ".jsonl.gz", gzip(explanations.lines, kGzipLevel)));
+    tile.files.push_back(context_.folder.write("explain/" + tile.name + ".jsonl.gz",
+                                               gzip(explanations.lines, kGzipLevel, attribution(context_))));
     return ExplainedTile{std::move(explanations.objects), std::move(explanations.places)};
   }
   void take(const FinishedTile& tile, std::any product) override {

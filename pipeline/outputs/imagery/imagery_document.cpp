@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "pipeline/outputs/output.h"
+
 namespace blockrand::outputs {
 namespace {
 
@@ -327,6 +329,7 @@ observation::UnmappedBuilding unmapped_of(const nlohmann::json& j) {
 std::string imagery_json(const observation::ImageryObservations& seen, const footprints::FootprintStore& footprints,
                          const std::vector<bool>& here) {
   Json j;
+  j["attribution"] = attribution(seen.images);
   j["applied"] = seen.applied;
   j["images"] = Json::array();
   for (const observation::ImageReceipt& image : seen.images) j["images"].push_back(image_json(image));

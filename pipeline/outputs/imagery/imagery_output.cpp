@@ -67,7 +67,8 @@ class ImageryOutput : public OutputOf<std::vector<base::PublishedFile>> {
     return static_cast<std::uint32_t>(std::max_element(counts.begin(), counts.end()) - counts.begin());
   }
   OverlayInputs inputs() const {
-    return {*context_.imagery, context_.repaired.footprints, context_.images, context_.projection};
+    return {*context_.imagery, context_.repaired.footprints, context_.images, context_.projection,
+            attribution(context_)};
   }
 
   const OutputContext& context_;

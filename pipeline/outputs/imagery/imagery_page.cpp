@@ -212,7 +212,7 @@ std::string imagery_page(const OverlayInputs& in, const std::vector<std::string>
       if (path.ends_with(".png")) out += "<li><a href=\"" + path + "\">" + path + "</a></li>\n";
     out += "</ul>\n";
   }
-  return out + "</main>\n</body>\n</html>\n";
+  return out + "</main>\n<footer>" + escaped(in.attribution) + "</footer>\n</body>\n</html>\n";
 }
 
 }  // namespace blockrand::outputs

@@ -8,6 +8,7 @@
 #include "pipeline/footprints/move_buildings.h"
 #include "pipeline/observation/corrections.h"
 #include "pipeline/observation/verdict.h"
+#include "pipeline/picture/lettering.h"
 #include "pipeline/picture/plan.h"
 
 namespace blockrand::outputs {
@@ -111,6 +112,7 @@ picture::Image draw_overlay(const OverlayInputs& in, const geometry::PlanBox& bo
     for (Point2& p : roof) p.x += u.lean.x, p.y += u.lean.y;
     plan.stroke(roof, kLine * plan.metres_per_pixel(), kUnmapped, true);
   }
+  picture::sign(plan.image(), in.attribution);
   return plan.image();
 }
 

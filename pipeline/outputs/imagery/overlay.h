@@ -20,6 +20,7 @@ struct OverlayInputs {
   const footprints::FootprintStore& footprints;
   std::span<const importers::imagery::AerialImage> images;  ///< parallel to seen.images
   const georef::Projection& projection;
+  std::string attribution;  ///< of map and images
 };
 
 /// The colours of outlines, for legends: as mapped where it stays; as mapped where the image shows it elsewhere; there, by
@@ -28,7 +29,8 @@ inline constexpr model::Colour kAsMapped{255, 255, 255}, kBefore{255, 214, 0}, k
     kAfterSure{0, 230, 255}, kRefused{255, 40, 40}, kUnmapped{70, 255, 70};
 
 /// A picture of a box: images that fit the map, the first that has a pixel, the others' parts grey; outlines where the
-/// images show the roofs, that is displaced by their lean; candidates for unmapped buildings in the box. Deterministic.
+/// images show the roofs, that is displaced by their lean; candidates for unmapped buildings in the box;
+/// in the lower right corner whose data they are. Deterministic.
 /// \param box        m in the build CRS
 /// \param pixel      m
 /// \param buildings  by number

@@ -5,10 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <tuple>
+#include <utility>
 
+#include "pipeline/base/portable_math.h"
+#include "pipeline/base/text.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/georef/tiles.h"
+#include "pipeline/model/point.h"
 #include "pipeline/picture/image.h"
+#include "pipeline/picture/labels.h"
+#include "pipeline/picture/lettering.h"
+#include "pipeline/picture/sheet.h"
 
 namespace blockrand::outputs {
 
@@ -18,6 +27,12 @@ constexpr int kFilePixels = 3000;    // a side of the file: at kPlanReach a wall
 constexpr int kReportPixels = 1300;  // a side of the picture in the report
 constexpr double kTileExtent = 700;  // m: buildings of a tile of level 15 lie at most so far from its centre
 constexpr double kFinest = 8;        // pixels per metre: more shows nothing more
+
+constexpr model::Colour kSheetPaper{255, 255, 255}, kNameInk{45, 42, 60};
+/// Names of streets: as high as fits between two rows of houses, within a share of the longer side of the map.
+constexpr double kNameHeight = 13;       // m an em
+constexpr int kPale = 220, kGrey = 200;  // brightness: buildings have 217
+constexpr double kLeastName = 0.0092, kLargestName = 0.0155;
 
 picture::PlanBox cropped(const picture::PlanBox& box, model::Point2 middle) {
   const auto crop = [](double low, double high, double at) {
@@ -104,14 +119,125 @@ void pack_drawn(std::span<const picture::PlanTile> tiles, const picture::PlanBox
   }
 }
 
-picture::Image sheet(std::span<const picture::PlanTile> tiles, const picture::PlanBox& box, int pixels) {
+/// Streets and squares with their names, so much of them as lies near the box, sorted. m.
+std::vector<picture::NamedLine> named_streets(const context::ContextExtract& context, const picture::PlanBox& box) {
+  const picture::PlanBox near = reached(box);
+  const auto rank = [](context::LineClass kind) {
+    if (kind <= context::LineClass::secondary) return 0;
+    return kind == context::LineClass::tertiary ? 1 : 2;
+  };
+  std::vector<picture::NamedLine> out;
+  for (const context::NetworkLine& line : context.lines) {
+    if (!context::is_street(line.kind) || line.name.empty() || line.tunnel || !meets(near, line.points)) continue;
+    if (line.area) {
+      // A square's name stands level, in its middle.
+      model::Polygon square;
+      square.outer.points = line.points;
+      picture::PlanBox of{1e300, 1e300, -1e300, -1e300};
+      for (const model::Point2 p : line.points)
+        of = {std::min(of.min_x, p.x), std::min(of.min_y, p.y), std::max(of.max_x, p.x), std::max(of.max_y, p.y)};
+      const model::Point2 middle{(of.min_x + of.max_x) / 2, (of.min_y + of.max_y) / 2};
+      if (of.min_x >= near.min_x && of.max_x <= near.max_x && geometry::contains(square, middle))
+        out.push_back({line.name, 1, {{of.min_x, middle.y}, {of.max_x, middle.y}}});
+      continue;
+    }
+    std::vector<model::Point2> part;
+    const auto end = [&] {
+      if (part.size() > 1) out.push_back({line.name, rank(line.kind), part});
+      part.clear();
+    };
+    for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
+      if (!meets(near, std::span(line.points).subspan(i, 2))) {
+        end();
+        continue;
+      }
+      if (part.empty()) part.push_back(line.points[i]);
+      part.push_back(line.points[i + 1]);
+    }
+    end();
+  }
+  const auto key = [](const picture::NamedLine& line) {
+    std::vector<std::pair<double, double>> points;
+    for (const model::Point2 p : line.points) points.emplace_back(p.x, p.y);
+    return std::tuple(line.name, line.rank, points);
+  };
+  std::ranges::sort(out, {}, key);
+  return out;
+}
+
+/// Takes out what would be a row of boxes. \returns how many names
+std::size_t drop_unwritable(std::vector<picture::NamedLine>& sorted, const picture::Lettering& letters) {
+  std::set<std::string_view> names;
+  for (const picture::NamedLine& line : sorted)
+    if (!letters.can_write(line.name)) names.insert(line.name);
+  const std::size_t count = names.size();
+  std::erase_if(sorted, [&](const picture::NamedLine& line) { return !letters.can_write(line.name); });
+  return count;
+}
+
+void write_names(picture::Plan& plan, std::span<const picture::NamedLine> streets, const picture::Lettering& letters,
+                 std::span<const std::array<model::Point2, 4>> taken) {
+  const int width = plan.image().width, height = plan.image().height, side = std::max(width, height);
+  picture::LabelOptions options;
+  options.size = std::clamp(kNameHeight / plan.metres_per_pixel(), kLeastName * side, kLargestName * side);
+  options.of_rank = {1.25, 1.1, 1};
+  options.apart = 0.4 * side;
+  options.margin = 0.3 * options.size;
+  options.between = 0.2 * options.size;
+  options.covers = [&](int x, int y) {
+    if (x < 0 || y < 0 || x >= width || y >= height) return 0.0;
+    const std::uint8_t* const p = std::as_const(plan).image().pixel(x, y);
+    // Paper, streets, courtyards and what lies between them are pale, buildings less so, walls strong: they are what the plan
+    // is about.
+    const int bright = (p[0] + p[1] + p[2]) / 3;
+    return bright >= kPale ? 0.0 : bright >= kGrey ? 0.5 : 1.0;
+  };
+  std::vector<picture::NamedLine> lines(streets.begin(), streets.end());
+  for (picture::NamedLine& line : lines)
+    for (model::Point2& p : line.points) p = plan.pixel_of(p);
+  for (const picture::Label& label : picture::place_labels(lines, width, height, options, letters, taken))
+    letters.write(
+        plan.image(), label.start(), label.text,
+        {.size = label.size, .colour = kNameInk, .halo = 0.13 * label.size, .halo_colour = picture::kPlanPaper},
+        label.direction);
+}
+
+picture::Plan drawn_map(std::span<const picture::PlanTile> tiles, const picture::PlanBox& box, int pixels) {
   picture::Plan plan(box, std::min(kFinest, picture::scale_for(box, pixels)), picture::kPlanPaper);
   picture::draw(plan, tiles);
-  plan.draw_scale_bar();
-  return plan.image();
+  return plan;
+}
+
+/// Where the words of a scale bar stand.
+std::array<model::Point2, 4> scale_bar_box(const picture::Plan& plan, double bar) {
+  const double right = bar / plan.metres_per_pixel() + 24, top = plan.image().height - 44.0,
+               bottom = plan.image().height;
+  return {{{0, top}, {right, top}, {right, bottom}, {0, bottom}}};
 }
 
 }  // namespace
+
+std::string about_words(std::uint64_t buildings, std::string_view data_time, const georef::Crs& crs) {
+  const std::string_view date = data_time.substr(0, data_time.find('T'));
+  std::string about =
+      fmt::format("{} {}; ", base::with_thousands(buildings), buildings == 1 ? "building" : "buildings");
+  about += date.empty() ? "date of the data unknown" : fmt::format("data of {}", date);
+  about += "; " + crs.name;
+  if (!crs.authority_code.empty()) about += " (" + crs.authority_code + ")";
+  return about;
+}
+
+std::string north_words(const georef::Projection& projection, model::Point2 place) {
+  constexpr double kStep = 0.01;  // degrees: a good kilometre
+  const georef::LonLat at = projection.inverse(place);
+  const model::Point2 from = model::snap(projection.forward(at.lon, at.lat)),
+                      to = model::snap(projection.forward(at.lon, at.lat + kStep));
+  const double right = base::atan2(to.x - from.x, to.y - from.y) * base::kDegreesPerRadian;
+  const double tenths = std::floor(10 * std::fabs(right) + 0.5);
+  if (!(tenths >= 1)) return "Grid north is up, true north as well";
+  return fmt::format("Grid north is up; true north lies {:.1f}\u00b0 to the {}", tenths / 10,
+                     right < 0 ? "left" : "right");
+}
 
 PlanChoice choose_plan(std::span<const footprints::Shard> shards, const georef::Projection& projection,
                        const PicturePlan& pictures) {
@@ -129,22 +255,51 @@ PlanChoice choose_plan(std::span<const footprints::Shard> shards, const georef::
 }
 
 PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const context::ContextExtract& context,
-                    const PlanChoice& choice, const base::Memo* memo) {
+                    const PlanChoice& choice, const georef::Projection& projection, const PlanWords& words,
+                    const base::Memo* memo) {
   const picture::PlanBox all = picture::box_of(tiles);
   if (!(all.width() > 0 && all.height() > 0)) return {};
   const picture::PlanBox box = cropped(all, choice.middle);
   tiles.push_back(vicinity(context, reached(box)));
+  const bool part = !choice.whole || box.width() < all.width() || box.height() < all.height();
+  picture::SheetText text{.title = words.title,
+                          .below_title = {words.about},
+                          .legend = {},
+                          .metres_per_pixel = 0,
+                          .north = north_words(projection, {(box.min_x + box.max_x) / 2, (box.min_y + box.max_y) / 2}),
+                          .attribution = words.attribution,
+                          .generator = words.generator};
+  if (part)
+    text.below_title.push_back(
+        fmt::format("This sheet shows {:.0f} by {:.0f} m of it, where it is densest.", box.width(), box.height()));
+  std::vector<picture::NamedLine> streets = named_streets(context, box);
   auto out = base::remembered<PlanSheet>(
-      memo, "plan", [&](base::Packer& packer) { pack_drawn(tiles, box, packer); },
+      memo, "plan",
+      [&](base::Packer& packer) {
+        pack_drawn(tiles, box, packer);
+        packer << streets << text.title << text.below_title << text.north << text.attribution << text.generator;
+      },
       [&] {
+        const picture::Lettering letters;
         PlanSheet drawn;
-        drawn.png = picture::png(sheet(tiles, box, kFilePixels));
-        const picture::Image small = sheet(tiles, box, kReportPixels);
-        drawn.in_report = {picture::png(small), small.width, small.height,
-                           "From above, north up. Walls in the colours of what they face."};
+        if (const std::size_t names = drop_unwritable(streets, letters); names > 0)
+          text.below_title.push_back(fmt::format(
+              "{} left out: in letters that this program's font lacks.",
+              names == 1 ? "The name of one street is" : fmt::format("The names of {} streets are", names)));
+        picture::Plan large = drawn_map(tiles, box, kFilePixels);
+        write_names(large, streets, letters, {});
+        text.legend = picture::legend_of(tiles, box);
+        text.metres_per_pixel = large.metres_per_pixel();
+        drawn.png = picture::png(picture::sheet(large.image(), text, kSheetPaper));
+        picture::Plan small = drawn_map(tiles, box, kReportPixels);
+        const std::array taken{scale_bar_box(small, small.draw_scale_bar()),
+                               picture::sign(small.image(), words.attribution)};
+        write_names(small, streets, letters, taken);
+        drawn.in_report = {picture::png(small.image()), small.image().width, small.image().height,
+                           "From above. " + text.north + ". Walls in the colours of what they face."};
         return drawn;
       });
-  if (!choice.whole || box.width() < all.width() || box.height() < all.height())
+  if (part)
     out.note =
         fmt::format("The plan shows {:.0f} by {:.0f} m of the build's densest part. All of it is in the GeoPackage.",
                     box.width(), box.height());

@@ -14,6 +14,7 @@
 #include "pipeline/model/vector.h"
 #include "pipeline/outputs/gltf/element_geometry.h"
 #include "pipeline/outputs/gltf/mesh_buffers.h"
+#include "pipeline/picture/lettering.h"
 #include "pipeline/picture/render.h"
 
 namespace blockrand::outputs {
@@ -370,17 +371,18 @@ std::string Pictures::note() const {
                      base::with_thousands(plan_.buildings));
 }
 
-std::vector<outputs::ReportPicture> Pictures::take(int workers, const base::Memo* memo) {
+std::vector<outputs::ReportPicture> Pictures::take(int workers, const base::Memo* memo, std::string_view attribution) {
   if (buildings_.empty()) return {};
   auto out = base::remembered<std::vector<outputs::ReportPicture>>(
-      memo, "pictures", [&](base::Packer& packer) { packer << scene_ << detail_ << buildings_ << plan_.spot; },
-      [&] { return shoot(workers); });
+      memo, "pictures",
+      [&](base::Packer& packer) { packer << scene_ << detail_ << buildings_ << plan_.spot << attribution; },
+      [&] { return shoot(workers, attribution); });
   scene_ = detail_ = picture::Scene(plan_.origin);
   buildings_ = {};
   return out;
 }
 
-std::vector<outputs::ReportPicture> Pictures::shoot(int workers) {
+std::vector<outputs::ReportPicture> Pictures::shoot(int workers, std::string_view attribution) {
   std::vector<outputs::ReportPicture> out;
   lay_ground();
 
@@ -419,9 +421,10 @@ std::vector<outputs::ReportPicture> Pictures::shoot(int workers) {
       [&](std::size_t i) {
         const Shot& shot = shots[i];
         const bool close = i + 1 == shots.size();
-        out[i] = {
-            picture::png(picture::render(close && detailed ? detail_ : scene_, shot.camera, shot.options, &scene_)),
-            shot.options.width, shot.options.height, shot.caption};
+        picture::Image image =
+            picture::render(close && detailed ? detail_ : scene_, shot.camera, shot.options, &scene_);
+        picture::sign(image, attribution);
+        out[i] = {picture::png(image), shot.options.width, shot.options.height, shot.caption};
       },
       [](std::size_t) {});
   return out;

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "pipeline/base/attribution.h"
 #include "pipeline/base/memo.h"
 #include "pipeline/footprints/repair_extract.h"
 #include "pipeline/footprints/shard.h"
@@ -66,14 +68,16 @@ class Pictures {
   void add(PictureTile&& tile);
   /// The pictures, on up to `workers` threads; none where no building has a solid. The same bytes for any number of
   /// threads. Leaves the collection empty, so that its memory is free.
-  /// \param memo  where those of an earlier run are found again; null: none
-  std::vector<outputs::ReportPicture> take(int workers, const base::Memo* memo = nullptr);
+  /// \param memo         where those of an earlier run are found again; null: none
+  /// \param attribution  for their corner
+  std::vector<outputs::ReportPicture> take(int workers, const base::Memo* memo = nullptr,
+                                           std::string_view attribution = base::kAttribution);
   /// What they show, where that is not the whole build.
   std::string note() const;
 
  private:
   void lay_ground();
-  std::vector<outputs::ReportPicture> shoot(int workers);
+  std::vector<outputs::ReportPicture> shoot(int workers, std::string_view attribution);
   PicturePlan plan_;
   picture::Scene scene_, detail_;
   std::vector<PicturedBuilding> buildings_;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/base/attribution.h"
 #include "pipeline/model/building.h"
 #include "pipeline/model/extract.h"
 #include "pipeline/model/report.h"
@@ -76,7 +77,7 @@ struct ReportFacts {
   std::vector<ReportPicture> pictures;
   std::string pictures_note;  ///< what the pictures show, where it is not the whole build; may be empty
   ContextFacts context;
-  std::string attribution = "\u00a9 OpenStreetMap contributors";
+  std::string attribution = base::kAttribution;
 };
 
 }  // namespace blockrand::outputs

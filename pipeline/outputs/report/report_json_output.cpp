@@ -9,7 +9,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Sorted by object; and what codes mean.
-std::string report_json(const model::Extract& extract, const std::vector<model::ReportRow>& rows) {
+std::string report_json(const model::Extract& extract, const std::vector<model::ReportRow>& rows,
+                        const std::string& attribution) {
   // Details that the importer noted about objects that end as reported stand with the object.
   std::map<std::pair<model::OsmId, model::IssueCode>, std::string> details;
   Json fallbacks = Json::array(), notices = Json::array();
@@ -42,6 +43,7 @@ std::string report_json(const model::Extract& extract, const std::vector<model::
   for (int i = 1; i < model::kIssueCodeCount; ++i)
     codes[std::string(model::kIssueInfo[i].text)] = model::kIssueInfo[i].meaning;
   Json j;
+  j["attribution"] = attribution;
   j["objects"] = std::move(objects);
   j["fallbacks"] = std::move(fallbacks);
   j["notices"] = std::move(notices);
@@ -55,7 +57,8 @@ class ReportJsonOutput : public OutputOf<std::monostate> {
 
   std::any write_tile(FinishedTile&) const override { return std::monostate(); }
   void finish(const FinishedBuild& build) override {
-    build.files.push_back(context_.folder.write("report.json", report_json(context_.extract, build.rows)));
+    build.files.push_back(
+        context_.folder.write("report.json", report_json(context_.extract, build.rows, attribution(context_))));
   }
 
  private:

@@ -42,6 +42,7 @@ ReportFacts report_facts(const OutputContext& context, const FinishedBuild& buil
   ReportFacts f;
   f.name = context.name;
   f.data_time = context.data_time;
+  f.attribution = attribution(context);
   f.program_version = base::kVersion;
   f.crs_code = context.crs.authority_code;
   f.crs_name = context.crs.name;
@@ -79,6 +80,10 @@ ReportFacts report_facts(const OutputContext& context, const FinishedBuild& buil
     if (b.state != model::ObjectState::modelled) f.objects.push_back({b.id, b.kind, b.state, b.code, b.related});
   for (const base::PublishedFile& file : build.files) f.files.push_back({file.path, file.bytes});
   return f;
+}
+
+PlanWords plan_words(const OutputContext& context, std::uint64_t buildings) {
+  return {context.name, about_words(buildings, context.data_time, context.crs), attribution(context), generator()};
 }
 
 /// What a tile gives to the page.
@@ -120,14 +125,15 @@ class ReportOutput : public OutputOf<TileShare> {
   }
   /// The page lists the files of all outputs.
   void conclude(const FinishedBuild& build) override {
-    PlanSheet plan = draw_plan(std::move(plans_), context_.context, plan_choice_, context_.memo);
+    PlanSheet plan = draw_plan(std::move(plans_), context_.context, plan_choice_, context_.projection,
+                               plan_words(context_, page_.buildings_built()), context_.memo);
     if (!plan.png.empty()) build.files.push_back(context_.folder.write("plan.png", plan.png));
     std::ranges::sort(build.files, {}, &base::PublishedFile::path);
     ReportFacts facts = report_facts(context_, build, page_);
     if (!plan.png.empty()) facts.context.plan = std::move(plan.in_report);
     facts.context.plan_note = std::move(plan.note);
     facts.pictures_note = pictures_.note();
-    facts.pictures = pictures_.take(context_.workers, context_.memo);
+    facts.pictures = pictures_.take(context_.workers, context_.memo, attribution(context_));
     build.files.push_back(context_.folder.write("report.html", page_.html(facts)));
   }
 

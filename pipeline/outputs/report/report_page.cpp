@@ -62,7 +62,7 @@ std::string ReportBuilder::html(const ReportFacts& facts, const ReportOptions& o
   out += statistics_section(facts);
   out += file_section(facts);
   out += "</main>\n<footer>Map data <a href=\"https://www.openstreetmap.org/copyright\">" + escaped(facts.attribution) +
-         "</a>, available under the Open Database License. Made by Blockrand " + escaped(facts.program_version) +
+         "</a>. Made by Blockrand " + escaped(facts.program_version) +
          "; this page loads nothing from elsewhere.</footer>\n<script>";
   out += asset("report/report.js");
   out += "</script>\n</body>\n</html>\n";

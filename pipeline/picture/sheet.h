@@ -1,0 +1,38 @@
+// A map as a sheet of paper that explains itself: title, legend, scale, north, and whose data it shows.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/model/colour.h"
+#include "pipeline/picture/image.h"
+
+namespace blockrand::picture {
+
+enum class LegendSign : std::uint8_t { area, line, thin_line };
+
+struct LegendEntry {
+  model::Colour colour;
+  std::string words;
+  LegendSign sign = LegendSign::area;
+};
+
+struct SheetText {
+  std::string title;                     ///< made smaller where it is too long, then cut with an ellipsis
+  std::vector<std::string> below_title;  ///< a paragraph each, in lines as they fit
+  std::vector<LegendEntry> legend;       ///< in this order, column by column
+  double metres_per_pixel = 0;           ///< of the map, for a scale bar; 0: none
+  /// Of grid north: "Grid north is up; true north lies 0.9° to the right". Empty: no arrow.
+  std::string north;
+  std::string attribution;  ///< all of it is written, in lines as they fit
+  std::string generator;
+};
+
+/// The map with its frame, words above and a legend below. As wide as the map and its margins, kLeastSheet at least. Words are a
+/// fixed share of the width, so that they can be read when the whole sheet is looked at, small as it may be.
+Image sheet(const Image& map, const SheetText& text, model::Colour paper);
+
+inline constexpr int kLeastSheet = 1200;  ///< px
+
+}  // namespace blockrand::picture
