@@ -56,11 +56,13 @@ export class Flight {
   }
 
   /** Flies to a house and keeps the direction of view, but looks down enough to see over its neighbours. */
-  visit(foot: Vector3, height: number): void {
+  visit(foot: Vector3, height: number, above_sheet: boolean): void {
     const offset = this.camera.position.clone().sub(this.target);
     const azimuth = Math.atan2(-offset.x, offset.z);
     const altitude = MathUtils.clamp(Math.asin(MathUtils.clamp(offset.y / Math.max(1e-6, offset.length()), -1, 1)), 0.6, 0.95);
-    this.look(foot.clone().setY(foot.y + height / 2), 75 + 1.6 * height, azimuth, altitude, false);
+    // Above the sheet that covers the lower half of a narrow page.
+    const distance = (75 + 1.6 * height) * (above_sheet ? 1.5 : 1);
+    this.look(foot.clone().setY(foot.y + height / 2 - (above_sheet ? 0.2 * distance : 0)), distance, azimuth, altitude, false);
   }
 
   /** Moves on. True: the camera is elsewhere than before. */

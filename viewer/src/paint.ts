@@ -1,5 +1,5 @@
 // The material of all houses: three's Lambert shading with colours by feature, glass that mirrors the sky, and darker feet.
-import { Color, DataTexture, FrontSide, MeshLambertMaterial } from 'three';
+import { Color, DataTexture, DoubleSide, FrontSide, MeshLambertMaterial } from 'three';
 
 /** What all tiles share: changed in place, so that a change shows everywhere at once. */
 export const PAINT = {
@@ -9,6 +9,8 @@ export const PAINT = {
   sun_direction: { value: [0, 1, 0] },
   highlight: { value: new Color('#ff5310') },
   lamps: { value: 0 },
+  /** Stripes of the chosen house per pixel of the picture. */
+  hatching: { value: 1 / 14 },
 };
 
 // Marks of a feature's texel: alpha. With colours, rgb is the square root of linear light, as in vertices.
@@ -48,11 +50,13 @@ uniform vec3 sun_colour;
 uniform vec3 sun_direction;
 uniform vec3 highlight;
 uniform float lamps;
+uniform float hatching;
 `;
 // Coloured: bodies take the colour, with a little of their own light and dark, so that walls and roofs stay apart;
 // ornaments take a pale tint of it, glass stays glass.
 const FRAGMENT_COLOUR = /* glsl */ `
-vec3 shown = v_paint;
+// Colours of whole houses look stronger than those of a sample: a little weaker, as through air.
+vec3 shown = mix(vec3(dot(v_paint, vec3(0.2126, 0.7152, 0.0722))), v_paint, 0.86);
 bool is_glass = v_kind > 1.5 && v_kind < 2.5;
 float marks = v_feature.a * 3.0;
 bool chosen = marks > 1.5;
@@ -60,10 +64,14 @@ bool coloured = (marks > 0.5 && marks < 1.5) || marks > 2.5;
 if (coloured && !is_glass) {
   float own = sqrt(dot(v_paint, vec3(0.2126, 0.7152, 0.0722)));
   vec3 given = v_feature.rgb * v_feature.rgb;
-  shown = v_kind < 0.5 ? given * (0.72 + 0.4 * own) : mix(given, vec3(own), 0.3) * (0.85 + 0.3 * own);
+  shown = v_kind < 0.5 ? given * (0.72 + 0.4 * own) : mix(given, vec3(0.85), 0.1 + 0.16 * own);
 }
 if (coloured && is_glass) shown = vec3(0.05, 0.06, 0.07);
-if (chosen && !is_glass) shown = mix(shown, highlight, coloured ? 0.45 : 0.62);
+// The chosen house keeps its colour in a legend's colours and is hatched, which every eye can tell.
+if (chosen && !is_glass) {
+  if (coloured) shown = mix(shown, vec3(1.0), step(0.5, fract((gl_FragCoord.x + gl_FragCoord.y) * hatching)) * 0.85);
+  else shown = mix(shown, highlight, 0.62);
+}
 // Light from the sky reaches the foot of a wall less than its top.
 float open = mix(0.66, 1.0, smoothstep(-0.5, 9.0, v_above));
 diffuseColor.rgb = shown * open;
@@ -82,12 +90,12 @@ if (is_glass) {
   float room = fract(sin(dot(floor(v_world / vec3(3.1, 3.4, 3.1)), vec3(12.9898, 78.233, 37.719))) * 43758.5453);
   outgoingLight += lamps * step(0.62, room) * vec3(0.95, 0.62, 0.26) * (0.5 + 0.5 * room);
 }
-if (chosen) outgoingLight += highlight * 0.12;
+if (chosen && !coloured) outgoingLight += highlight * 0.12;
 `;
 
 /** A material whose houses take their colours from `features`, a texel of MARK and colour for each row of the table. */
 export function painted_material(features: DataTexture): MeshLambertMaterial {
-  const material = new MeshLambertMaterial({ side: FrontSide });
+  const material = new MeshLambertMaterial({ side: FrontSide, shadowSide: DoubleSide });
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, PAINT, { features: { value: features } });
     shader.vertexShader = shader.vertexShader

@@ -9,7 +9,7 @@ const WINDS = ['north', 'north-east', 'east', 'south-east', 'south', 'south-west
 export class SunCard {
   on_change = (_position: SunPosition): void => {};
   day = 135;
-  minutes = 16 * 60;
+  minutes = 15 * 60 + 15;
   private readonly said = make('p', { class: 'bv-note', 'aria-live': 'polite' });
   private readonly time_out = make('output', {});
   private readonly day_out = make('output', {});

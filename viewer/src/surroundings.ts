@@ -12,9 +12,9 @@ const DAYLIGHT: [number, string, string, string, number, number, number][] = [
   [-18, '#070b16', '#131b2c', '#8fa6d6', 0, 0.5, 0.85],
   [-7, '#13213f', '#4a4a66', '#8fa6d6', 0, 0.62, 0.8],
   [-1, '#33538a', '#d99a72', '#ff8a4a', 0.15, 0.95, 0.45],
-  [5, '#4b7fbe', '#f0cfa8', '#ffb271', 1.9, 1.1, 0.1],
-  [16, '#4d8fd2', '#dde7ec', '#ffe0b5', 3.0, 1.25, 0],
-  [40, '#3f86cf', '#d3e4ef', '#fff1dc', 3.4, 1.35, 0],
+  [5, '#4b7fbe', '#f0cfa8', '#ffb271', 1.9, 1.8, 0.1],
+  [16, '#4d8fd2', '#dde7ec', '#ffe0b5', 2.7, 2.3, 0],
+  [40, '#3f86cf', '#d3e4ef', '#fff3e2', 2.9, 2.6, 0],
 ];
 
 const SKY_VERTEX = /* glsl */ `
@@ -50,19 +50,21 @@ export class Surroundings {
 
   constructor(private readonly scene: Scene, private readonly renderer: WebGLRenderer, shadow_pixels: number) {
     const sky = new Mesh(new SphereGeometry(1, 48, 24), new ShaderMaterial({
-      vertexShader: SKY_VERTEX, fragmentShader: SKY_FRAGMENT, side: BackSide, depthWrite: false, depthTest: false,
+      vertexShader: SKY_VERTEX, fragmentShader: SKY_FRAGMENT, side: BackSide, depthWrite: false,
       uniforms: { sky_zenith: PAINT.sky_zenith, sky_horizon: PAINT.sky_horizon, sun_colour: PAINT.sun_colour, sun_direction: PAINT.sun_direction },
     }));
-    sky.renderOrder = -1;
+    // Houses first, then what they leave free.
+    sky.renderOrder = 2;
     sky.frustumCulled = false;
-    const ground = new Mesh(curved_disc(), new MeshLambertMaterial({ color: '#a9aaa0' }));
+    const ground = new Mesh(curved_disc(), new MeshLambertMaterial({ color: '#c9c6bb' }));
     ground.receiveShadow = true;
+    ground.renderOrder = 1;
     ground.position.y = -0.03;
     scene.fog = this.fog;
     scene.add(sky, ground, this.sun, this.sun.target, this.skylight);
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(shadow_pixels, shadow_pixels);
-    this.sun.shadow.radius = 2.2;
+    this.sun.shadow.radius = 1.3;
     this.sun.shadow.bias = -0.0004;
     this.renderer.shadowMap.autoUpdate = false;
   }
@@ -85,8 +87,8 @@ export class Surroundings {
     PAINT.lamps.value = number(6);
     this.sun.color.copy(colour(3));
     this.sun.intensity = night ? 0.35 : number(4);
-    this.skylight.color.copy(colour(1)).lerp(colour(2), 0.6).lerp(new Color('#ffffff'), 0.25);
-    this.skylight.groundColor.set('#8d8675').multiplyScalar(Math.min(1, 0.25 + number(5) * 0.45));
+    this.skylight.color.copy(colour(1)).lerp(colour(2), 0.7).lerp(new Color('#ffffff'), 0.45);
+    this.skylight.groundColor.set('#a59c88').multiplyScalar(Math.min(1, 0.25 + number(5) * 0.45));
     this.skylight.intensity = number(5);
     this.fog.color.copy(colour(2));
     this.shadow_reach = 0;
@@ -95,8 +97,8 @@ export class Surroundings {
   /** Keeps light and haze about what the camera looks at. shapes: what casts shadows changed. */
   follow(camera: PerspectiveCamera, looked_at: Vector3, shapes: boolean): void {
     const distance = camera.position.distanceTo(looked_at);
-    this.fog.near = 900 + 2.5 * distance;
-    this.fog.far = 7000 + 9 * distance;
+    this.fog.near = 350 + 1.6 * distance;
+    this.fog.far = 4000 + 7 * distance;
     const height = Math.max(2, camera.position.y - Frame.ground_at(camera.position.x, camera.position.z));
     camera.near = Math.min(20, Math.max(0.15, height / 40));
     camera.far = 30000 + 20 * height;

@@ -12,8 +12,8 @@ import { Table } from './table';
 const KIND = { body: 0, detail: 85, glass: 170, metal: 255 } as const;
 const NO_FEATURE = 65535;
 const CELL = 96; // m
-const COARSE_TRIANGLES = 14;
-const COARSE_SHARE = 0.93; // of an element's area
+const COARSE_TRIANGLES = 26;
+const COARSE_SHARE = 0.94; // of an element's area
 const TEXTURE_WIDTH = 256;
 
 interface Shape {

@@ -10,6 +10,7 @@ import { HousePanel } from './house_panel';
 import { Legend } from './legend';
 import { read_link, write_link } from './link';
 import { Model } from './model';
+import { PAINT } from './paint';
 import { make, Page } from './page';
 import { PlaceLine, Places } from './places';
 import { SearchBox } from './search_box';
@@ -21,6 +22,9 @@ const MEGABYTE = 1 << 20;
 const CLICK = 6; // pixels and
 const CLICK_TIME = 500; // ms that a click may wander and last
 const TIMES_KEPT = 240;
+const SLOW = 70; // ms: where pictures take longer, those of a movement have fewer pixels
+const MOVING_SCALE = 0.5; // of the width and height
+const LOADING_PAUSE = 280; // ms between pictures while tiles arrive, where the processor draws
 
 /** view.json, checked. */
 export interface Description {
@@ -73,27 +77,25 @@ export class View {
   private first_picture = false;
   private readonly times: number[] = [];
   private last_frame = 0;
+  private last_drawn = 0;
   private drawn = 0;
-  private readonly started = performance.now();
   private first_after = 0;
   private readonly ready: Promise<void>;
   private tell_ready = (): void => {};
 
   constructor(private readonly page: Page, private readonly files: Files, private readonly told: Description) {
     this.ready = new Promise((done) => (this.tell_ready = done));
-    if (!page.canvas.getContext('webgl2', { antialias: true, powerPreference: 'high-performance' }))
-      throw new Error('this browser gives no WebGL 2. It may be switched off in its settings, or the graphics driver is blocked.');
-    this.renderer = new WebGLRenderer({ canvas: page.canvas, antialias: true, powerPreference: 'high-performance' });
-    this.software = is_software(this.renderer);
+    this.software = drawn_by_software();
+    this.renderer = new WebGLRenderer({ canvas: page.canvas, antialias: !this.software, powerPreference: 'high-performance' });
     this.renderer.outputColorSpace = SRGBColorSpace;
     this.renderer.toneMapping = NeutralToneMapping;
-    this.renderer.toneMappingExposure = 0.82;
+    this.renderer.toneMappingExposure = 1.0;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
-    this.surroundings = new Surroundings(this.scene, this.renderer, this.software ? 1024 : 2048);
+    this.surroundings = new Surroundings(this.scene, this.renderer, this.software ? 1536 : 2048);
     this.frame = new Frame(told.centre);
     this.model = new Model(files, this.frame, told.tileset, this.software
-      ? { error: 16, near: 45, bytes: 300 * MEGABYTE } : { error: 10, near: 140, bytes: 512 * MEGABYTE });
+      ? { error: 18, near: 70, bytes: 300 * MEGABYTE } : { error: 10, near: 140, bytes: 512 * MEGABYTE });
     this.scene.add(this.model.tiles.group);
     this.flight = new Flight(this.camera, page.canvas);
     this.walk = new Walk(this.camera, page.canvas);
@@ -128,6 +130,7 @@ export class View {
       frameTimes: () => [...this.times],
       memory: () => ({ bytes: this.model.bytes, tiles: this.model.models.size }),
       state: () => this.state(),
+      view: this,
     };
   }
 
@@ -147,7 +150,7 @@ export class View {
   private describe_build(): void {
     const { name, buildings, lod, data_time, attribution } = this.told;
     this.page.heading.textContent = name || 'Houses';
-    const facts = [buildings ? `${buildings.toLocaleString('en')} houses` : '', lod ? `level of detail ${lod}` : '', data_time ? `data of ${data_time.slice(0, 10)}` : ''];
+    const facts = [buildings ? `${buildings.toLocaleString('en')} houses` : '', lod ? `LoD${lod}` : '', data_time ? `data of ${data_time.slice(0, 10)}` : ''];
     this.page.facts.textContent = facts.filter(Boolean).join(' · ');
     this.page.attribution.append(attribution);
     if (!this.told.places.length) this.page.search.hidden = true;
@@ -268,8 +271,8 @@ export class View {
     const found = this.model.find(this.chosen), place = this.chosen_place;
     if (found) {
       const { foot, height } = this.model.place(found.model, found.rows);
-      this.flight.visit(foot, height);
-    } else if (place) this.flight.visit(this.frame.point(place.lon, place.lat, 0), place.height);
+      this.flight.visit(foot, height, this.page.narrow);
+    } else if (place) this.flight.visit(this.frame.point(place.lon, place.lat, 0), place.height, this.page.narrow);
   }
 
   /** A house of the link may be anywhere: loaded already, or in the list of places. */
@@ -316,35 +319,56 @@ export class View {
     const sphere = this.placed ? this.model.sphere() : null;
     const middle = new Vector3(0, 8, 0);
     const distance = Math.min(900, Math.max(160, (sphere?.radius ?? 330) * 1.25));
-    this.flight.look(middle, distance * (this.camera.aspect < 0.8 ? 1.35 : 1), 0.32, 0.56, at_once);
+    this.flight.look(middle, distance * (this.camera.aspect < 0.8 ? 1.35 : 1), 0.32, 0.38, at_once);
     this.dirty = true;
   }
 
   private start_walk(): void {
     const from = this.open_place(this.flight.target.clone());
-    const towards = this.flight.target.distanceTo(from) > 8
-      ? this.flight.target.clone()
-      : from.clone().addScaledVector(this.camera.getWorldDirection(new Vector3()).setY(0).normalize(), 40);
     this.flight.enabled = false;
-    this.walk.start(from, towards);
+    this.walk.start(from, this.clear_view(from).towards);
     this.page.walk_hint.hidden = false;
     this.page.walk_button.setAttribute('aria-pressed', 'true');
     this.page.root.classList.add('bv-walking');
+    this.page.panel.hidden = true;
     this.page.say('Walking. W A S D or arrow keys walk, Escape leaves.');
     this.dirty = true;
   }
 
-  /** The nearest place that is not under a roof. */
+  /** A place near by that is not under a roof and not right before a wall. */
   private open_place(near: Vector3): Vector3 {
     const ray = new Raycaster();
-    for (let ring = 0; ring < 9; ++ring) {
-      for (let i = 0; i < Math.max(1, 8 * (ring ? 1 : 0)); ++i) {
+    let best = near, widest = -1, tried = 0;
+    for (let ring = 0; ring < 10 && tried < 5; ++ring) {
+      for (let i = 0; i < (ring ? 8 : 1) && tried < 5; ++i) {
         const angle = (i * Math.PI) / 4, at = new Vector3(near.x + 6 * ring * Math.cos(angle), 0, near.z + 6 * ring * Math.sin(angle));
         ray.set(at.clone().setY(500), new Vector3(0, -1, 0));
-        if (!this.model.hit(ray)) return at;
+        if (this.model.hit(ray)) continue;
+        ++tried;
+        const { room } = this.clear_view(at);
+        if (room > widest) [best, widest] = [at, room];
+        if (room > 5) return at;
       }
     }
-    return near;
+    return best;
+  }
+
+  /** Where one sees farthest from a place, and how far the nearest wall is. */
+  private clear_view(at: Vector3): { towards: Vector3; room: number } {
+    const eye = at.clone().setY(Frame.ground_at(at.x, at.z) + 2.2), ray = new Raycaster();
+    let farthest = -1, room = Infinity;
+    const towards = at.clone();
+    for (let i = 0; i < 12; ++i) {
+      const direction = new Vector3(Math.cos((i * Math.PI) / 6), 0, Math.sin((i * Math.PI) / 6));
+      ray.set(eye, direction);
+      const distance = Math.min(150, this.model.hit(ray)?.point.distanceTo(eye) ?? 150);
+      room = Math.min(room, distance);
+      if (distance > farthest) {
+        farthest = distance;
+        towards.copy(at).addScaledVector(direction, 50);
+      }
+    }
+    return { towards, room };
   }
 
   private end_walk(): void {
@@ -371,8 +395,7 @@ export class View {
 
   private resize(): void {
     const width = Math.max(1, this.page.root.clientWidth), height = Math.max(1, this.page.root.clientHeight);
-    this.renderer.setPixelRatio(this.software ? 1 : Math.min(2, devicePixelRatio));
-    this.renderer.setSize(width, height, false);
+    this.set_sharpness(this.sharp);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     this.model.watch(this.camera, this.renderer);
@@ -381,6 +404,23 @@ export class View {
   }
 
   private moved_by_size = true;
+  private sharp = false;
+
+  private set_sharpness(sharp: boolean): void {
+    this.sharp = sharp;
+    PAINT.hatching.value = 1 / (14 * this.pixel_ratio(sharp));
+    this.renderer.setPixelRatio(this.pixel_ratio(sharp));
+    this.renderer.setSize(Math.max(1, this.page.root.clientWidth), Math.max(1, this.page.root.clientHeight), false);
+  }
+
+  private pixel_ratio(sharp: boolean): number {
+    return (this.software ? 1 : Math.min(2, devicePixelRatio)) * (sharp ? 1 : MOVING_SCALE);
+  }
+
+  private get slow(): boolean {
+    const last = this.times.slice(-6);
+    return this.software || (last.length === 6 && last.reduce((sum, time) => sum + time) / 6 > SLOW);
+  }
 
   private step(): void {
     const moved = (this.walk.active ? this.walk.update() : this.flight.update()) || this.moved_by_size;
@@ -393,18 +433,23 @@ export class View {
     }
     const { settled } = this.model;
     this.page.loading(!settled && this.page.failures.length === 0);
-    if (!moved && !this.dirty) {
+    const still = !moved && settled;
+    if (!moved && !this.dirty && (this.sharp || !still)) {
       this.last_frame = 0;
       if (settled && this.legend_stale) this.update_legend();
       return;
     }
+    if (this.software && !moved && !settled && performance.now() - this.last_drawn < LOADING_PAUSE) return;
+    const sharp = still || !this.slow;
+    if (sharp !== this.sharp) this.set_sharpness(sharp);
     this.dirty = false;
-    if (this.shapes_changed) this.surroundings.follow(this.camera, this.walk.active ? this.walk.ahead(40) : this.flight.target, true);
-    this.shapes_changed = false;
+    if (this.shapes_changed && (still || !this.software)) this.surroundings.follow(this.camera, this.walk.active ? this.walk.ahead(40) : this.flight.target, true);
+    if (still || !this.software) this.shapes_changed = false;
     this.renderer.render(this.scene, this.camera);
     ++this.drawn;
     this.place_marker();
     const now = performance.now();
+    this.last_drawn = now;
     if (this.last_frame) {
       this.times.push(now - this.last_frame);
       if (this.times.length > TIMES_KEPT) this.times.shift();
@@ -421,7 +466,6 @@ export class View {
       this.first_after = performance.now();
       this.tell_ready();
     });
-    void this.started;
   }
 
   private update_legend(): void {
@@ -437,9 +481,12 @@ export class View {
   }
 }
 
-function is_software(renderer: WebGLRenderer): boolean {
-  const gl = renderer.getContext();
+/** Whether the processor draws, as on machines without a graphics unit. Throws where nothing can draw. */
+function drawn_by_software(): boolean {
+  const gl = make('canvas').getContext('webgl2');
+  if (!gl) throw new Error('this browser gives no WebGL 2. It may be switched off in its settings, or the graphics driver is blocked.');
   const info = gl.getExtension('WEBGL_debug_renderer_info');
-  const name = String(info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : gl.getParameter(gl.RENDERER));
+  const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
   return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
 }
