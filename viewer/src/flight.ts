@@ -36,6 +36,11 @@ export class Flight {
     return this.controls.enabled;
   }
 
+  /** Since the last update. */
+  get moved(): boolean {
+    return this.changed;
+  }
+
   get flying(): boolean {
     return this.flight !== null;
   }

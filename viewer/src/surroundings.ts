@@ -9,9 +9,9 @@ import type { SunPosition } from './sun';
 
 // By the sun's altitude in degrees: sky above, sky at the horizon, sunlight and its strength, strength of skylight, lamps in windows.
 const DAYLIGHT: [number, string, string, string, number, number, number][] = [
-  [-18, '#070b16', '#131b2c', '#8fa6d6', 0, 0.5, 0.85],
-  [-7, '#13213f', '#4a4a66', '#8fa6d6', 0, 0.62, 0.8],
-  [-1, '#33538a', '#d99a72', '#ff8a4a', 0.15, 0.95, 0.45],
+  [-18, '#070b16', '#131b2c', '#8fa6d6', 0, 1.9, 0.85],
+  [-7, '#13213f', '#4a4a66', '#8fa6d6', 0, 1.9, 0.8],
+  [-1, '#33538a', '#d99a72', '#ff8a4a', 0.3, 1.7, 0.45],
   [5, '#4b7fbe', '#f0cfa8', '#ffb271', 1.9, 1.8, 0.1],
   [16, '#4d8fd2', '#dde7ec', '#ffe0b5', 2.7, 2.3, 0],
   [40, '#3f86cf', '#d3e4ef', '#fff3e2', 2.9, 2.6, 0],
@@ -86,9 +86,9 @@ export class Surroundings {
     PAINT.sun_direction.value = this.direction.toArray();
     PAINT.lamps.value = number(6);
     this.sun.color.copy(colour(3));
-    this.sun.intensity = night ? 0.35 : number(4);
+    this.sun.intensity = night ? 0.8 : number(4);
     this.skylight.color.copy(colour(1)).lerp(colour(2), 0.7).lerp(new Color('#ffffff'), 0.45);
-    this.skylight.groundColor.set('#a59c88').multiplyScalar(Math.min(1, 0.25 + number(5) * 0.45));
+    this.skylight.groundColor.set('#a59c88').multiplyScalar(night ? 0.35 : Math.min(1, 0.25 + number(5) * 0.45));
     this.skylight.intensity = number(5);
     this.fog.color.copy(colour(2));
     this.shadow_reach = 0;

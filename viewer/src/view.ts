@@ -137,7 +137,7 @@ export class View {
   private state() {
     const { altitude, azimuth } = this.sun.position;
     return {
-      settled: this.model.settled && !this.flight.flying, first_picture_ms: this.first_after, software: this.software, pictures: this.drawn,
+      settled: this.model.settled && !this.flight.flying && !this.flight.moved && !this.dirty && this.sharp, first_picture_ms: this.first_after, software: this.software, pictures: this.drawn,
       house: this.chosen, colour: this.legend.mode.name, legend: this.legend.entries, walking: this.walk.active,
       camera: this.camera.position.toArray(), target: this.flight.target.toArray(), direction: this.camera.getWorldDirection(new Vector3()).toArray(),
       sun: { day: this.sun.day, minutes: this.sun.minutes, altitude, azimuth },
@@ -150,8 +150,9 @@ export class View {
   private describe_build(): void {
     const { name, buildings, lod, data_time, attribution } = this.told;
     this.page.heading.textContent = name || 'Houses';
-    const facts = [buildings ? `${buildings.toLocaleString('en')} houses` : '', lod ? `LoD${lod}` : '', data_time ? `data of ${data_time.slice(0, 10)}` : ''];
+    const facts: string[] = [buildings ? `${buildings.toLocaleString('en')} houses` : '', lod ? `LoD${lod}` : '', ];
     this.page.facts.textContent = facts.filter(Boolean).join(' · ');
+    if (data_time) this.page.facts.append(make('span', {}, `${facts.some(Boolean) ? ' · ' : ''}data of ${data_time.slice(0, 10)}`));
     this.page.attribution.append(attribution);
     if (!this.told.places.length) this.page.search.hidden = true;
     if (!this.page.root.closest('[data-blockrand-embedded]') && !this.files.is_embedded) document.title = name ? `${name} · Blockrand` : 'Blockrand';
@@ -319,7 +320,7 @@ export class View {
     const sphere = this.placed ? this.model.sphere() : null;
     const middle = new Vector3(0, 8, 0);
     const distance = Math.min(900, Math.max(160, (sphere?.radius ?? 330) * 1.25));
-    this.flight.look(middle, distance * (this.camera.aspect < 0.8 ? 1.35 : 1), 0.32, 0.38, at_once);
+    this.flight.look(middle, distance, 0.32, this.camera.aspect < 0.8 ? 0.6 : 0.38, at_once);
     this.dirty = true;
   }
 
