@@ -166,8 +166,14 @@ export class Model {
       ++parts;
     }
     middle.divideScalar(Math.max(1, parts)).setY(parts ? low : 0);
-    model.group.updateWorldMatrix(true, false);
-    return { foot: middle.applyMatrix4(model.group.matrixWorld), height: parts ? high - low : 10 };
+    return { foot: middle.applyMatrix4(this.matrix_of(model)), height: parts ? high - low : 10 };
+  }
+
+  /** From the tile's frame to the page's, whether the tile hangs in the scene or not. */
+  private matrix_of(model: TileModel): Matrix4 {
+    const own = model.group.parent!;
+    own.updateMatrix();
+    return new Matrix4().multiplyMatrices(this.tiles.group.matrixWorld, own.matrix);
   }
 
   private arrange(scene: Group, uri: string): void {
@@ -187,7 +193,7 @@ export class Model {
     for (const model of visible) {
       if (!model.cells.length) continue;
       for (const cell of model.cells) {
-        sphere.copy(cell.coarse.geometry.boundingSphere!).applyMatrix4(matrix_of(model));
+        sphere.copy(cell.coarse.geometry.boundingSphere!).applyMatrix4(this.matrix_of(model));
         const distance = Math.max(0, sphere.center.distanceTo(eye) - sphere.radius);
         if (distance < near) wanted.push({ cell, distance });
         else if (distance > 1.3 * near) this.coarsen(cell);
@@ -234,11 +240,6 @@ const LOADER = {
 
 function model_of(scene: Group | null | undefined): TileModel | null {
   return (scene?.userData.model as TileModel | undefined) ?? null;
-}
-
-function matrix_of(model: TileModel): Matrix4 {
-  model.group.updateWorldMatrix(true, false);
-  return model.group.matrixWorld;
 }
 
 /** "tiles/15/35206/25947_lod2.glb" is of tile 15_35206_25947, pieces of a tile as well. */

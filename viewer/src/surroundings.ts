@@ -9,8 +9,8 @@ import type { SunPosition } from './sun';
 
 // By the sun's altitude in degrees: sky above, sky at the horizon, sunlight and its strength, strength of skylight, lamps in windows.
 const DAYLIGHT: [number, string, string, string, number, number, number][] = [
-  [-18, '#070b16', '#131b2c', '#8fa6d6', 0, 1.9, 0.85],
-  [-7, '#13213f', '#4a4a66', '#8fa6d6', 0, 1.9, 0.8],
+  [-18, '#070b16', '#131b2c', '#8fa6d6', 0, 1.4, 0.85],
+  [-7, '#13213f', '#4a4a66', '#8fa6d6', 0, 1.4, 0.8],
   [-1, '#33538a', '#d99a72', '#ff8a4a', 0.3, 1.7, 0.45],
   [5, '#4b7fbe', '#f0cfa8', '#ffb271', 1.9, 1.8, 0.1],
   [16, '#4d8fd2', '#dde7ec', '#ffe0b5', 2.7, 2.3, 0],

@@ -124,13 +124,14 @@ export class View {
 
   /** window.blockrandView. */
   get for_tests() {
+    // `look` is for tests that fly about.
     return {
       ready: this.ready,
       /** Milliseconds between the last pictures that followed each other. */
       frameTimes: () => [...this.times],
       memory: () => ({ bytes: this.model.bytes, tiles: this.model.models.size }),
       state: () => this.state(),
-      view: this,
+      look: (x: number, z: number, distance: number, azimuth: number, altitude: number) => this.flight.look(new Vector3(x, Frame.ground_at(x, z), z), distance, azimuth, altitude, true),
     };
   }
 
