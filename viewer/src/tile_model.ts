@@ -45,6 +45,8 @@ export class TileModel {
   readonly extents: Float32Array;
   private readonly bottoms: Float32Array;
   private readonly elements: Json[] = [];
+  /** Of glTF meshes in `elements`. */
+  private readonly numbers = new Map<number, number>();
   private readonly element_of: number[] = [];
   private readonly feature_of: number[] = [];
   private readonly matrices: Matrix4[] = [];
@@ -107,11 +109,17 @@ export class TileModel {
     const parts: { primitive: Json; matrix: Matrix4; index: Values | null; positions: Values }[] = [];
     let vertices = 0, corners = 0;
     for (const { node, matrix } of this.glb.placed_nodes()) {
+      const { primitives } = this.glb.json.meshes[node.mesh];
       if (node.extensions?.EXT_mesh_gpu_instancing) {
         this.add_instances(node, matrix);
         continue;
       }
-      for (const primitive of this.glb.json.meshes[node.mesh].primitives) {
+      // A build with --instancing nodes: windows are nodes of their own, whose house the file does not tell.
+      if (this.table.count && primitives.every((primitive: Json) => primitive.attributes._FEATURE_ID_0 === undefined)) {
+        this.add_instance(matrix, this.element_number(node.mesh), NO_FEATURE);
+        continue;
+      }
+      for (const primitive of primitives) {
         if ((primitive.mode ?? 4) !== 4) continue;
         const positions = this.glb.values(primitive.attributes.POSITION);
         const index = primitive.indices === undefined ? null : this.glb.values(primitive.indices);
@@ -187,7 +195,7 @@ export class TileModel {
     const read = (name: string) => (attributes[name] === undefined ? null : this.glb.values(attributes[name]));
     const moved = read('TRANSLATION'), turned = read('ROTATION'), scaled = read('SCALE'), ids = read('_FEATURE_ID_0');
     const count = (moved ?? turned ?? scaled)?.count ?? 0;
-    const element = this.elements.push(this.glb.json.meshes[node.mesh]) - 1;
+    const element = this.element_number(node.mesh);
     const t = new Vector3(), q = new Quaternion(), s = new Vector3();
     for (let i = 0; i < count; ++i) {
       if (moved) read3(moved, i, t);
@@ -198,10 +206,20 @@ export class TileModel {
       }
       if (scaled) read3(scaled, i, s);
       else s.set(1, 1, 1);
-      this.matrices.push(matrix.clone().multiply(new Matrix4().compose(t, q, s)));
-      this.element_of.push(element);
-      this.feature_of.push(ids ? ids.array[i * ids.stride]! : NO_FEATURE);
+      this.add_instance(matrix.clone().multiply(new Matrix4().compose(t, q, s)), element, ids ? ids.array[i * ids.stride]! : NO_FEATURE);
     }
+  }
+
+  private add_instance(matrix: Matrix4, element: number, feature: number): void {
+    this.matrices.push(matrix);
+    this.element_of.push(element);
+    this.feature_of.push(feature);
+  }
+
+  private element_number(mesh: number): number {
+    let number = this.numbers.get(mesh);
+    if (number === undefined) this.numbers.set(mesh, (number = this.elements.push(this.glb.json.meshes[mesh]) - 1));
+    return number;
   }
 
   private make_cells(): void {
