@@ -7,12 +7,28 @@ import { build } from 'esbuild';
 const here = dirname(fileURLToPath(import.meta.url));
 const out = process.argv[2] ?? 'bundle';
 mkdirSync(out, { recursive: true });
-const common = { absWorkingDir: here, bundle: true, minify: true, charset: 'utf8', target: ['es2022', 'chrome110', 'firefox115', 'safari16.4'], logLevel: 'warning', write: false };
+const common = {
+  absWorkingDir: here,
+  bundle: true,
+  minify: true,
+  charset: 'utf8',
+  target: ['es2022', 'chrome110', 'firefox115', 'safari16.4'],
+  logLevel: 'warning',
+  write: false,
+};
 const script = await build({
-  ...common, entryPoints: ['src/start.ts'], format: 'iife', globalName: 'BlockrandView', legalComments: 'none', metafile: true, outfile: 'viewer.js',
+  ...common,
+  entryPoints: ['src/start.ts'],
+  format: 'iife',
+  globalName: 'BlockrandView',
+  legalComments: 'none',
+  metafile: true,
+  outfile: 'viewer.js',
   // Tiles come through our own reader: the formats of older tilesets stay out.
   alias: { 'three/addons/loaders/GLTFLoader.js': './src/no_gltf_loader.ts' },
-  banner: { js: '/* Blockrand viewer, GPL-3.0-or-later; it holds three.js and others: LICENSES.txt. Built from viewer/ of the repository. */' },
+  banner: {
+    js: '/* Blockrand viewer, GPL-3.0-or-later; it holds three.js and others: LICENSES.txt. Built from viewer/ of the repository. */',
+  },
 });
 const style = await build({ ...common, entryPoints: ['src/viewer.css'], outfile: 'viewer.css' });
 writeFileSync(join(out, 'viewer.js'), script.outputFiles[0].contents);
@@ -34,5 +50,6 @@ const texts = [...packages].sort().map((name) => {
 });
 if (script.metafile && Object.keys(script.metafile.inputs).some((path) => path.includes('meshopt_decoder')))
   texts.push(readFileSync(join(here, 'src/meshopt_licence.txt'), 'utf8'));
-const head = 'Blockrand viewer: GPL-3.0-or-later, the licence of the repository.\n\nviewer.js holds parts of the following packages:\n';
+const head =
+  'Blockrand viewer: GPL-3.0-or-later, the licence of the repository.\n\nviewer.js holds parts of the following packages:\n';
 writeFileSync(join(out, 'LICENSES.txt'), [head, ...texts].join(`\n${'-'.repeat(80)}\n\n`));

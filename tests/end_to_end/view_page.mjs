@@ -19,16 +19,22 @@ const absent = (what) => {
   console.error(`absent: ${what}`);
   process.exit(77);
 };
-const modules = resolve(given_modules ?? join(dirname(fileURLToPath(import.meta.url)), '../../build/release/node_modules'));
-const browser_file = [process.env.CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser'].find((f) => f && existsSync(f));
+const modules = resolve(
+  given_modules ?? join(dirname(fileURLToPath(import.meta.url)), '../../build/release/node_modules'),
+);
+const browser_file = [process.env.CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser'].find(
+  (f) => f && existsSync(f),
+);
 if (!browser_file) absent('chromium (or name a browser in CHROMIUM)');
-if (!existsSync(join(modules, 'playwright-core'))) absent('npm package playwright-core: npm install with tests/validators/package.json');
+if (!existsSync(join(modules, 'playwright-core')))
+  absent('npm package playwright-core: npm install with tests/validators/package.json');
 const require = createRequire(pathToFileURL(join(modules, 'x.js')));
 const { chromium } = require('playwright-core');
 const axe_source = existsSync(join(modules, 'axe-core')) ? require('axe-core').source : null;
 mkdirSync(pictures, { recursive: true });
 
-const WIDE = { width: 1400, height: 900 }, NARROW = { width: 390, height: 844 };
+const WIDE = { width: 1400, height: 900 },
+  NARROW = { width: 390, height: 844 };
 const PATIENCE = 180_000; // ms: software draws, perhaps beside other work
 const problems = [];
 let checks = 0;
@@ -42,10 +48,17 @@ const check = (holds, what, seen) => {
 
 const browser = await chromium.launch({
   executablePath: browser_file,
-  args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-dev-shm-usage',
-    '--disable-background-networking'],
+  args: [
+    '--no-sandbox',
+    '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader',
+    '--ignore-gpu-blocklist',
+    '--disable-dev-shm-usage',
+    '--disable-background-networking',
+  ],
 });
-const foreign = new Set(), messages = [];
+const foreign = new Set(),
+  messages = [];
 let expected_errors = false; // while files are taken away on purpose
 
 async function open(address, options = {}) {
@@ -86,7 +99,8 @@ const reader = await browser.newPage();
 async function pixels(png) {
   return reader.evaluate(async (base64) => {
     const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${base64}`)).blob());
-    const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext('2d');
+    const canvas = new OffscreenCanvas(image.width, image.height),
+      context = canvas.getContext('2d');
     context.drawImage(image, 0, 0);
     const { data } = context.getImageData(0, 0, image.width, image.height);
     const colours = new Set();
@@ -95,20 +109,22 @@ async function pixels(png) {
     const small = [];
     for (let i = 0; i < data.length; i += 4) {
       const [r, g, b] = [data[i], data[i + 1], data[i + 2]];
-      colours.add((r >> 2 << 12) | (g >> 2 << 6) | b >> 2);
+      colours.add(((r >> 2) << 12) | ((g >> 2) << 6) | (b >> 2));
       light += 0.2126 * r + 0.7152 * g + 0.0722 * b;
-      const most = Math.max(r, g, b), spread = most - Math.min(r, g, b);
+      const most = Math.max(r, g, b),
+        spread = most - Math.min(r, g, b);
       if (spread > 40) {
         const hue = most === r ? ((g - b) / spread + 6) % 6 : most === g ? (b - r) / spread + 2 : (r - g) / spread + 4;
         hues[Math.floor(hue * 6) % 36] += 1;
       }
-      if ((i / 4) % 7 === 0) small.push((r + g + b) / 3 | 0);
+      if ((i / 4) % 7 === 0) small.push(((r + g + b) / 3) | 0);
     }
     const count = data.length / 4;
     return { colours: colours.size, light: light / count, hues: hues.map((n) => n / count), small };
   }, png.toString('base64'));
 }
-const difference = (a, b) => a.small.reduce((n, value, i) => n + (Math.abs(value - b.small[i]) > 12), 0) / a.small.length;
+const difference = (a, b) =>
+  a.small.reduce((n, value, i) => n + (Math.abs(value - b.small[i]) > 12), 0) / a.small.length;
 /** The picture of the houses alone, without what lies above it. */
 const VIEW = { x: 330, y: 150, width: 660, height: 640 };
 async function shot(page, name, clip = VIEW) {
@@ -117,19 +133,32 @@ async function shot(page, name, clip = VIEW) {
 }
 const distance = (a, b) => Math.hypot(...a.map((v, i) => v - b[i]));
 const hue_of = (rgb) => {
-  const [r, g, b] = rgb.match(/\d+/g).map(Number), most = Math.max(r, g, b), spread = most - Math.min(r, g, b);
+  const [r, g, b] = rgb.match(/\d+/g).map(Number),
+    most = Math.max(r, g, b),
+    spread = most - Math.min(r, g, b);
   if (spread < 60) return null;
   return (most === r ? ((g - b) / spread + 6) % 6 : most === g ? (b - r) / spread + 2 : (r - g) / spread + 4) * 6;
 };
 
 const told = await (await fetch(new URL('view.json', url))).json();
 const places = (await Promise.all(told.places.map(async (path) => (await fetch(new URL(path, url))).text())))
-  .flatMap((text) => text.split('\n')).filter(Boolean).map((line) => line.split('\t'));
+  .flatMap((text) => text.split('\n'))
+  .filter(Boolean)
+  .map((line) => line.split('\t'));
 const seen = {};
 
 /** Clicks over the picture until a house answers. */
 async function click_a_house(page, box = VIEW, tap = false) {
-  for (const [x, y] of [[0.5, 0.6], [0.3, 0.7], [0.7, 0.65], [0.4, 0.5], [0.6, 0.8], [0.2, 0.55], [0.8, 0.5], [0.5, 0.75]]) {
+  for (const [x, y] of [
+    [0.5, 0.6],
+    [0.3, 0.7],
+    [0.7, 0.65],
+    [0.4, 0.5],
+    [0.6, 0.8],
+    [0.2, 0.55],
+    [0.8, 0.5],
+    [0.5, 0.75],
+  ]) {
     const at = [box.x + x * box.width, box.y + y * box.height];
     if (tap) await page.touchscreen.tap(...at);
     else await page.mouse.click(...at);
@@ -144,7 +173,9 @@ const panel_text = (page) => page.evaluate("document.querySelector('.bv-panel')?
 async function axe(page, where) {
   if (!axe_source) return;
   await page.evaluate(axe_source);
-  const found = await page.evaluate("axe.run(document, { resultTypes: ['violations'] }).then((r) => r.violations.map((v) => [v.impact, v.id, v.nodes.map((n) => n.target.join(' ')).slice(0, 4)]))");
+  const found = await page.evaluate(
+    "axe.run(document, { resultTypes: ['violations'] }).then((r) => r.violations.map((v) => [v.impact, v.id, v.nodes.map((n) => n.target.join(' ')).slice(0, 4)]))",
+  );
   const serious = found.filter(([impact]) => ['serious', 'critical'].includes(impact));
   check(serious.length === 0, `axe-core, ${where}`, serious);
   (seen.axe ??= {})[where] = { serious: serious.length, others: found.length - serious.length };
@@ -170,13 +201,20 @@ async function first_picture_and_orbit(page) {
   }
   await page.mouse.up({ button: 'right' });
   const turned = await settled(page);
-  check(distance(turned.target, first.target) < 5 && distance(turned.camera, first.camera) > 40, 'the right button turns about the middle', [first.camera, turned.camera]);
+  check(
+    distance(turned.target, first.target) < 5 && distance(turned.camera, first.camera) > 40,
+    'the right button turns about the middle',
+    [first.camera, turned.camera],
+  );
   const after = await shot(page, '02_turned');
   check(difference(picture, after) > 0.05, 'the turned picture is another', difference(picture, after));
   await page.mouse.move(660, 480);
   await page.mouse.wheel(0, -400);
   const nearer = await settled(page);
-  check(distance(nearer.camera, nearer.target) < 0.95 * distance(turned.camera, turned.target), 'the wheel goes nearer');
+  check(
+    distance(nearer.camera, nearer.target) < 0.95 * distance(turned.camera, turned.target),
+    'the wheel goes nearer',
+  );
   await page.focus('.blockrand-view canvas');
   for (let i = 0; i < 4; ++i) await page.keyboard.press('ArrowUp');
   const moved = await settled(page);
@@ -205,15 +243,26 @@ async function a_house(page) {
   check(now.on_screen !== null, 'the marker stands over it');
   const text = await panel_text(page);
   const tile = places.find(([id]) => id === house)?.[1];
-  const explained = tile && told.explained ? (await (await fetch(new URL(`${told.explained}${tile}.json`, url))).json())[house] : null;
+  const explained =
+    tile && told.explained ? (await (await fetch(new URL(`${told.explained}${tile}.json`, url))).json())[house] : null;
   if (told.explained) check(explained, 'there is an explanation of the house', house);
   if (explained) {
-    check(text.includes(explained.title), 'the title of the explanation is shown', [explained.title, text.slice(0, 200)]);
-    check(explained.lines.every((line) => text.replace(/\s+/g, ' ').includes(line.replace(/\s+/g, ' ').trim())), 'all lines are shown');
+    check(text.includes(explained.title), 'the title of the explanation is shown', [
+      explained.title,
+      text.slice(0, 200),
+    ]);
+    check(
+      explained.lines.every((line) => text.replace(/\s+/g, ' ').includes(line.replace(/\s+/g, ' ').trim())),
+      'all lines are shown',
+    );
   }
   check((await page.locator('.bv-panel tbody tr').count()) > 6, 'attributes are listed');
   const link = await page.getAttribute('.bv-panel a', 'href');
-  check(/^https:\/\/www\.openstreetmap\.org\/(node|way|relation)\/\d+$/.test(link) && house.endsWith(link.split('/').pop()), 'it links to OpenStreetMap', link);
+  check(
+    /^https:\/\/www\.openstreetmap\.org\/(node|way|relation)\/\d+$/.test(link) && house.endsWith(link.split('/').pop()),
+    'it links to OpenStreetMap',
+    link,
+  );
   await page.click('button:has-text("Copy link")');
   await page.waitForTimeout(200);
   const copied = await page.evaluate('navigator.clipboard.readText().catch(() => null)');
@@ -224,16 +273,28 @@ async function a_house(page) {
 
 async function colours(page) {
   let before = await shot(page, '05_as_built');
-  for (const [name, label] of [['style', 'Style'], ['era', 'Era'], ['storeys', 'Storeys'], ['storeys_source', 'Source of storeys'], ['roof_source', 'Source of roof shape']]) {
+  for (const [name, label] of [
+    ['style', 'Style'],
+    ['era', 'Era'],
+    ['storeys', 'Storeys'],
+    ['storeys_source', 'Source of storeys'],
+    ['roof_source', 'Source of roof shape'],
+  ]) {
     await page.locator('.bv-modes label', { has: page.locator(`input[value="${name}"]`) }).click();
     await settled(page);
     await page.waitForTimeout(200);
-    const now = await state(page), picture = await shot(page, `06_${name}`);
+    const now = await state(page),
+      picture = await shot(page, `06_${name}`);
     check(now.colour === name && page.url().includes(`colour=${name}`), `${label} is chosen`, page.url());
-    check(now.legend.length > 0 && now.legend.every((entry) => entry.label && entry.count > 0), `${label} has a legend`, now.legend);
-    check((await page.locator('.bv-legend li').first().isVisible()), `the legend of ${label} is seen`);
+    check(
+      now.legend.length > 0 && now.legend.every((entry) => entry.label && entry.count > 0),
+      `${label} has a legend`,
+      now.legend,
+    );
+    check(await page.locator('.bv-legend li').first().isVisible(), `the legend of ${label} is seen`);
     check(difference(before, picture) > 0.02, `${label} looks different`, difference(before, picture));
-    const most = now.legend.reduce((a, b) => (a.count > b.count ? a : b)), hue = hue_of(most.colour);
+    const most = now.legend.reduce((a, b) => (a.count > b.count ? a : b)),
+      hue = hue_of(most.colour);
     if (hue !== null) {
       const share = [-2, -1, 0, 1, 2].reduce((sum, step) => sum + picture.hues[(Math.floor(hue) + step + 36) % 36], 0);
       check(share > 0.03, `houses have the legend's colour of "${most.label}"`, share);
@@ -246,21 +307,30 @@ async function colours(page) {
 
 async function sun(page) {
   await page.click('button:has-text("Sun")');
-  const set = (label, value) => page.evaluate(([l, v]) => {
-    const input = document.querySelector(`[aria-label="${l}"]`);
-    input.value = v;
-    input.dispatchEvent(new Event('input', { bubbles: true }));
-  }, [label, value]);
+  const set = (label, value) =>
+    page.evaluate(
+      ([l, v]) => {
+        const input = document.querySelector(`[aria-label="${l}"]`);
+        input.value = v;
+        input.dispatchEvent(new Event('input', { bubbles: true }));
+      },
+      [label, value],
+    );
   await set('Date', 172);
-  let highest = -9, at_noon = null;
+  let highest = -9,
+    at_noon = null;
   for (let minutes = 600; minutes < 900; minutes += 10) {
     await set('Time of day', minutes);
     const { altitude, azimuth } = (await state(page)).sun;
     if (altitude > highest) [highest, at_noon] = [altitude, azimuth];
   }
   const wanted = 90 - Math.abs(told.centre.lat - 23.44);
-  check(Math.abs((highest * 180) / Math.PI - wanted) < 0.4, 'at midsummer the sun is as high as the latitude says', [(highest * 180) / Math.PI, wanted]);
-  if (told.centre.lat > 24) check(Math.abs((at_noon * 180) / Math.PI - 180) < 5, 'at its highest it is in the south', at_noon);
+  check(Math.abs((highest * 180) / Math.PI - wanted) < 0.4, 'at midsummer the sun is as high as the latitude says', [
+    (highest * 180) / Math.PI,
+    wanted,
+  ]);
+  if (told.centre.lat > 24)
+    check(Math.abs((at_noon * 180) / Math.PI - 180) < 5, 'at its highest it is in the south', at_noon);
   await set('Time of day', 540);
   await settled(page);
   const morning = await shot(page, '07_morning');
@@ -285,7 +355,11 @@ async function walk(page) {
   await page.waitForTimeout(300);
   const start = await settled(page);
   const ground = (p) => -(p[0] ** 2 + p[2] ** 2) / (2 * 6371000);
-  check(start.walking && Math.abs(start.camera[1] - ground(start.camera) - 1.7) < 0.01, 'one walks at eye height', start.camera);
+  check(
+    start.walking && Math.abs(start.camera[1] - ground(start.camera) - 1.7) < 0.01,
+    'one walks at eye height',
+    start.camera,
+  );
   await shot(page, '10_walk');
   await page.keyboard.down('KeyW');
   await page.waitForTimeout(1200);
@@ -327,10 +401,22 @@ async function search(page) {
   const there = await settled(page);
   await page.waitForTimeout(600);
   check(there.house === id, 'it is chosen', there.house);
-  check(there.on_screen && there.on_screen[0] > 0 && there.on_screen[0] < WIDE.width && there.on_screen[1] > 0 && there.on_screen[1] < WIDE.height, 'it is in the picture', there.on_screen);
+  check(
+    there.on_screen &&
+      there.on_screen[0] > 0 &&
+      there.on_screen[0] < WIDE.width &&
+      there.on_screen[1] > 0 &&
+      there.on_screen[1] < WIDE.height,
+    'it is in the picture',
+    there.on_screen,
+  );
   check(distance(there.camera, there.target) < 250, 'one has flown there', distance(there.camera, there.target));
   check((await panel_text(page)).includes('Attributes'), 'its panel is filled', await panel_text(page));
-  check((await shot(page, '12_found')).colours > 100 && there.triangles > 1000, 'the picture shows it', there.triangles);
+  check(
+    (await shot(page, '12_found')).colours > 100 && there.triangles > 1000,
+    'the picture shows it',
+    there.triangles,
+  );
   check(distance(there.camera, [0, 0, 0]) < 100_000, 'near the middle of the build', there.camera);
   await axe(page, 'wide, with a house');
   await field.fill('no such street 99');
@@ -345,7 +431,10 @@ async function link(id) {
   await ready(page);
   await page.waitForTimeout(1500);
   const now = await settled(page);
-  check(now.house === id && now.colour === 'era' && now.legend.length > 0, 'a link brings house and colours', [now.house, now.colour]);
+  check(now.house === id && now.colour === 'era' && now.legend.length > 0, 'a link brings house and colours', [
+    now.house,
+    now.colour,
+  ]);
   check((await panel_text(page)).includes('Attributes'), 'and the panel');
   await shot(page, '13_link');
   await page.context().close();
@@ -353,7 +442,11 @@ async function link(id) {
   await ready(lost);
   await lost.waitForTimeout(500);
   const failures = (await state(lost)).failures;
-  check(failures.some((text) => text.includes('w999999999999')), 'a house that is not there is named', failures);
+  check(
+    failures.some((text) => text.includes('w999999999999')),
+    'a house that is not there is named',
+    failures,
+  );
   await lost.context().close();
 }
 
@@ -361,7 +454,10 @@ async function narrow() {
   const page = await open(url, { viewport: NARROW, hasTouch: true, isMobile: true });
   await ready(page);
   await page.screenshot({ path: join(pictures, '14_narrow.png') });
-  check((await page.evaluate('document.scrollingElement.scrollWidth')) <= NARROW.width, 'nothing is wider than the page');
+  check(
+    (await page.evaluate('document.scrollingElement.scrollWidth')) <= NARROW.width,
+    'nothing is wider than the page',
+  );
   await page.click('button:has-text("Colours")');
   await page.locator('.bv-modes label', { has: page.locator('input[value="storeys"]') }).click();
   await settled(page);
@@ -374,8 +470,17 @@ async function narrow() {
   await settled(page);
   await page.screenshot({ path: join(pictures, '16_narrow_house.png') });
   const sheet = await page.locator('.bv-panel').boundingBox();
-  check(sheet && sheet.width === NARROW.width && sheet.y > 0.4 * NARROW.height && sheet.y + sheet.height <= NARROW.height, 'the panel is a sheet from below', sheet);
-  check(await page.evaluate("(() => { const b = document.querySelector('.bv-attribution').getBoundingClientRect(); return document.elementFromPoint(b.x + b.width / 2, b.y + b.height / 2)?.className === 'bv-attribution'; })()"), 'the source of the data is not covered');
+  check(
+    sheet && sheet.width === NARROW.width && sheet.y > 0.4 * NARROW.height && sheet.y + sheet.height <= NARROW.height,
+    'the panel is a sheet from below',
+    sheet,
+  );
+  check(
+    await page.evaluate(
+      "(() => { const b = document.querySelector('.bv-attribution').getBoundingClientRect(); return document.elementFromPoint(b.x + b.width / 2, b.y + b.height / 2)?.className === 'bv-attribution'; })()",
+    ),
+    'the source of the data is not covered',
+  );
   await axe(page, 'narrow, with a house');
   await page.context().close();
 }
@@ -384,24 +489,38 @@ async function failures() {
   expected_errors = true;
   const failing = async (options, wanted, what) => {
     const page = await open(url, options);
-    for (const end = Date.now() + 30_000; Date.now() < end && !(await state(page))?.failures.length; ) await page.waitForTimeout(100);
+    for (const end = Date.now() + 30_000; Date.now() < end && !(await state(page))?.failures.length; )
+      await page.waitForTimeout(100);
     const shown = (await state(page))?.failures ?? [];
-    check(shown.some((text) => text.includes(wanted)), what, shown);
+    check(
+      shown.some((text) => text.includes(wanted)),
+      what,
+      shown,
+    );
     await page.screenshot({ path: join(pictures, `17_failure_${wanted.replace(/\W/g, '_')}.png`) });
     await page.context().close();
   };
-  const without = (pattern) => ({ prepare: (page) => page.route(pattern, (route) => route.fulfill({ status: 404, body: 'no' })) });
+  const without = (pattern) => ({
+    prepare: (page) => page.route(pattern, (route) => route.fulfill({ status: 404, body: 'no' })),
+  });
   await failing(without(/view\.json/), 'view.json', 'a missing view.json is named');
   await failing(without(/tileset\.json/), 'tileset.json', 'a missing tileset is named');
   await failing(without(/\.glb/), '.glb', 'a missing tile is named');
-  await failing({ prepare: (page) => page.addInitScript(() => {
-    HTMLCanvasElement.prototype.getContext = () => null;
-  }) }, 'WebGL', 'a browser without WebGL is told so');
+  await failing(
+    {
+      prepare: (page) =>
+        page.addInitScript(() => {
+          HTMLCanvasElement.prototype.getContext = () => null;
+        }),
+    },
+    'WebGL',
+    'a browser without WebGL is told so',
+  );
   expected_errors = false;
 }
 
 /** A report that carries its model: opened from disk, the viewer in a box of it. */
-async function embedded(id) {
+async function embedded() {
   const text = async (path) => (await fetch(new URL(path, url))).text();
   const files = {};
   let bytes = 0;
@@ -418,27 +537,45 @@ async function embedded(id) {
     (tile.children ?? []).forEach(walk_tiles);
   };
   walk_tiles(JSON.parse(Buffer.from(files[told.tileset], 'base64')).root);
-  for (const uri of contents) if (bytes < 60_000_000 && !uri.endsWith('.json')) await take(new URL(uri, new URL(told.tileset, 'http://x/')).pathname.slice(1));
+  for (const uri of contents)
+    if (bytes < 60_000_000 && !uri.endsWith('.json'))
+      await take(new URL(uri, new URL(told.tileset, 'http://x/')).pathname.slice(1));
   files['view.json'] = Buffer.from(JSON.stringify({ ...told, places: [], explained: null })).toString('base64');
   const folder = mkdtempSync(join(tmpdir(), 'view-page-'));
-  writeFileSync(join(folder, 'report.html'), `<!doctype html><html lang="en"><meta charset="utf-8"><title>report</title>
+  writeFileSync(
+    join(folder, 'report.html'),
+    `<!doctype html><html lang="en"><meta charset="utf-8"><title>report</title>
 <style>h2 { color: rgb(1, 2, 3); font-size: 30px } ${await text('viewer.css')}</style><h2 id="own">Report</h2>
 <div id="blockrand-view" style="width:900px;height:600px"></div><p>after</p>
 <script type="application/json" id="blockrand-embedded">${JSON.stringify({ files })}</script>
 <script>${(await text('viewer.js')).replaceAll('</script', '<\\/script')}</script>
-<script>BlockrandView.start(document.getElementById('blockrand-view'))</script></html>`);
+<script>BlockrandView.start(document.getElementById('blockrand-view'))</script></html>`,
+  );
   const page = await open(pathToFileURL(join(folder, 'report.html')).href);
   const now = await ready(page);
   check(now.shown.length > 0 && now.failures.length === 0, 'a report shows its own model', now);
-  check((await page.evaluate("getComputedStyle(document.getElementById('own')).color + getComputedStyle(document.getElementById('own')).fontSize")) === 'rgb(1, 2, 3)30px', 'the look of the report stays');
+  check(
+    (await page.evaluate(
+      "getComputedStyle(document.getElementById('own')).color + getComputedStyle(document.getElementById('own')).fontSize",
+    )) === 'rgb(1, 2, 3)30px',
+    'the look of the report stays',
+  );
   check((await page.title()) === 'report', 'its title stays');
+  const wheel = async () => {
+    const before = await state(page);
+    await page.mouse.move(600, 400);
+    await page.mouse.wheel(0, -300);
+    return distance((await settled(page)).camera, before.camera);
+  };
+  check((await wheel()) < 1, 'the wheel scrolls the report at first');
   const house = await click_a_house(page, { x: 330, y: 250, width: 560, height: 330 });
+  await page.focus('.blockrand-view canvas');
+  check((await wheel()) > 5, 'with the focus it zooms');
   await page.waitForTimeout(500);
   check(house !== null && (await panel_text(page)).includes('Attributes'), 'a house there has attributes', house);
   await page.screenshot({ path: join(pictures, '18_report.png') });
   await page.context().close();
   rmSync(folder, { recursive: true });
-  void id;
 }
 
 try {
@@ -450,13 +587,17 @@ try {
   await walk(page);
   const id = await search(page);
   const times = (await page.evaluate('blockrandView.frameTimes()')).sort((a, b) => a - b);
-  seen.frame_ms = { median: Math.round(times[times.length >> 1]), worst_tenth: Math.round(times[Math.floor(0.9 * times.length)]), counted: times.length };
+  seen.frame_ms = {
+    median: Math.round(times[times.length >> 1]),
+    worst_tenth: Math.round(times[Math.floor(0.9 * times.length)]),
+    counted: times.length,
+  };
   seen.memory = await page.evaluate('blockrandView.memory()');
   await page.context().close();
   await link(id);
   await narrow();
   await failures();
-  await embedded(id);
+  await embedded();
   check(foreign.size === 0, 'no request to another host', [...foreign]);
   // What the software renderer says about itself is not about the page.
   const own = messages.filter((m) => !/GPU stall|GL Driver Message|swiftshader|WebGL-0x/i.test(m));

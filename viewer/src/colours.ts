@@ -1,5 +1,5 @@
 // Ways to colour houses, each with its categories. Colours are told apart by all kinds of colour vision: Okabe and Ito, "Color
-// Universal Design" (2008) for kinds, Crameri's batlow and cividis-like ramps (light to dark) for numbers.
+// Universal Design" (2008) for kinds; for numbers and times ramps from light to dark.
 import { Color } from 'three';
 import { sources_of, Table } from './table';
 import { paint_texel } from './paint';
@@ -44,22 +44,38 @@ export const MODES: Mode[] = [
   {
     name: 'style',
     label: 'Style',
-    categories: categories(['gruenderzeit', 'Gründerzeit', '#d55e00'], ['tenement', 'interwar and plain tenement', '#009e73'],
-      ['modern', 'modern', '#56b4e9'], ['other', 'other', '#cc79a7']),
+    categories: categories(
+      ['gruenderzeit', 'Gründerzeit', '#d55e00'],
+      ['tenement', 'interwar and plain tenement', '#009e73'],
+      ['modern', 'modern', '#56b4e9'],
+      ['other', 'other', '#cc79a7'],
+    ),
     key_of: (table, row) => table.text('style', row),
   },
   {
     name: 'era',
     label: 'Era',
-    categories: categories(['pre1840', 'before 1840', '#4b2055'], ['1840_1918', '1840 to 1918', '#b5485f'],
-      ['1919_1945', '1919 to 1945', '#f0a35e'], ['post1945', 'since 1945', '#f7e8a4']),
+    categories: categories(
+      ['pre1840', 'before 1840', '#4b2055'],
+      ['1840_1918', '1840 to 1918', '#b5485f'],
+      ['1919_1945', '1919 to 1945', '#f0a35e'],
+      ['post1945', 'since 1945', '#f7e8a4'],
+    ),
     key_of: (table, row) => table.text('era', row),
   },
   {
     name: 'storeys',
     label: 'Storeys',
-    categories: categories(['1', '1', '#fdf3c0'], ['2', '2', '#d8d27f'], ['3', '3', '#a0b869'], ['4', '4', '#6a9d6c'], ['5', '5', '#3f8075'],
-      ['6', '6', '#2a6078'], ['8', '7 and 8', '#274073'], ['9', '9 and more', '#1d1a4f']),
+    categories: categories(
+      ['1', '1', '#fdf3c0'],
+      ['2', '2', '#d8d27f'],
+      ['3', '3', '#a0b869'],
+      ['4', '4', '#6a9d6c'],
+      ['5', '5', '#3f8075'],
+      ['6', '6', '#2a6078'],
+      ['8', '7 and 8', '#274073'],
+      ['9', '9 and more', '#1d1a4f'],
+    ),
     key_of: (table, row) => {
       const storeys = table.get('storeys', row);
       if (typeof storeys !== 'number') return '';
@@ -94,13 +110,19 @@ function category_of(mode: Mode, table: Table, row: number): Category {
 export function paint_tile(model: TileModel, mode: Mode, chosen: string | null): void {
   const chosen_rows = new Set(chosen === null ? [] : (model.rows_of.get(chosen) ?? []));
   for (let row = 0; row < model.table.count; ++row)
-    paint_texel(model.texels, row, mode.categories.length ? category_of(mode, model.table, row).colour : null, chosen_rows.has(row));
+    paint_texel(
+      model.texels,
+      row,
+      mode.categories.length ? category_of(mode, model.table, row).colour : null,
+      chosen_rows.has(row),
+    );
   model.features.needsUpdate = true;
 }
 
 /** Buildings of each category in these tiles, a building as its first part. */
 export function counts(models: Iterable<TileModel>, mode: Mode): Map<Category, number> {
-  const found = new Map<Category, number>(), seen = new Set<string>();
+  const found = new Map<Category, number>(),
+    seen = new Set<string>();
   for (const model of models) {
     for (const [building, rows] of model.rows_of) {
       if (seen.has(building)) continue;

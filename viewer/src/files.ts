@@ -2,7 +2,10 @@
 
 /** A file that is not there or cannot be read. The message names it. */
 export class FileMissing extends Error {
-  constructor(readonly path: string, reason: string) {
+  constructor(
+    readonly path: string,
+    reason: string,
+  ) {
     super(`${path}: ${reason}`);
   }
 }
@@ -17,10 +20,6 @@ export class Files {
     this.embedded = parsed ? ((parsed as { files?: Record<string, string> }).files ?? {}) : null;
     // A bundle beside a page of another folder is not foreseen: all paths are relative to the page.
     this.base = new URL('.', document.baseURI).toString();
-  }
-
-  get is_embedded(): boolean {
-    return this.embedded !== null;
   }
 
   /** The address under which the renderer asks for the file. */
@@ -47,7 +46,8 @@ export class Files {
 
   /** Answers an address of `url`. Throws FileMissing, or what an abort throws. */
   async response(url: string, signal?: AbortSignal): Promise<Response> {
-    const path = decodeURIComponent(url.startsWith(this.base) ? url.slice(this.base.length) : url).split(/[?#]/)[0] ?? '';
+    const path =
+      decodeURIComponent(url.startsWith(this.base) ? url.slice(this.base.length) : url).split(/[?#]/)[0] ?? '';
     if (this.embedded) {
       const held = this.embedded[path];
       if (held === undefined) throw new FileMissing(path, 'is not part of this page');
@@ -58,7 +58,12 @@ export class Files {
       answer = await fetch(url, signal ? { signal } : {});
     } catch (error) {
       if ((error as Error).name === 'AbortError') throw error;
-      throw new FileMissing(path, location.protocol === 'file:' ? 'a browser reads no files beside a page opened from disk; use `blockrand view`' : 'no answer from the server');
+      throw new FileMissing(
+        path,
+        location.protocol === 'file:'
+          ? 'a browser reads no files beside a page opened from disk; use `blockrand view`'
+          : 'no answer from the server',
+      );
     }
     if (!answer.ok) throw new FileMissing(path, `the server answers ${answer.status}`);
     return answer;

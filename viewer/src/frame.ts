@@ -17,7 +17,10 @@ export class Frame {
 
   constructor(readonly centre: Place) {
     const { lat, lon, height } = centre;
-    const east = new Vector3(), north = new Vector3(), up = new Vector3(), origin = new Vector3();
+    const east = new Vector3(),
+      north = new Vector3(),
+      up = new Vector3(),
+      origin = new Vector3();
     WGS84_ELLIPSOID.getEastNorthUpAxes(lat * RADIANS, lon * RADIANS, east, north, up);
     WGS84_ELLIPSOID.getCartographicToPosition(lat * RADIANS, lon * RADIANS, height, origin);
     this.from_earth = new Matrix4().makeBasis(east, up, north.negate()).setPosition(origin).invert();

@@ -26,7 +26,10 @@ const COMPONENTS = {
 const SIZES: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
 
 export class Glb {
-  private constructor(readonly json: Json, private readonly views: Uint8Array<ArrayBuffer>[]) {}
+  private constructor(
+    readonly json: Json,
+    private readonly views: Uint8Array<ArrayBuffer>[],
+  ) {}
 
   /** Throws an error with the reason where the bytes are no GLB that can be shown. */
   static async read(file: ArrayBuffer): Promise<Glb> {
@@ -59,14 +62,18 @@ export class Glb {
     if (!component || !size) throw new Error(`has an accessor of type ${accessor.type}`);
     const width = component.make.BYTES_PER_ELEMENT;
     const described = this.json.bufferViews[accessor.bufferView];
-    const stride = (described.extensions?.EXT_meshopt_compression?.byteStride ?? described.byteStride ?? size * width) / width;
+    const stride =
+      (described.extensions?.EXT_meshopt_compression?.byteStride ?? described.byteStride ?? size * width) / width;
     let bytes = this.view(accessor.bufferView);
     let offset = bytes.byteOffset + (accessor.byteOffset ?? 0);
     if (offset % width) {
       bytes = bytes.slice();
       offset = accessor.byteOffset ?? 0;
     }
-    const length = Math.min(accessor.count * stride, Math.floor((bytes.byteOffset + bytes.byteLength - offset) / width));
+    const length = Math.min(
+      accessor.count * stride,
+      Math.floor((bytes.byteOffset + bytes.byteLength - offset) / width),
+    );
     return {
       array: new component.make(bytes.buffer, offset, length),
       stride,

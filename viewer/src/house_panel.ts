@@ -21,7 +21,11 @@ export class HousePanel {
   private readonly tiles = new Map<string, Promise<Record<string, Explanation>>>();
   private building: string | null = null;
 
-  constructor(private readonly page: Page, private readonly files: Files, private readonly explained: string | null) {}
+  constructor(
+    private readonly page: Page,
+    private readonly files: Files,
+    private readonly explained: string | null,
+  ) {}
 
   close(): void {
     this.building = null;
@@ -38,10 +42,15 @@ export class HousePanel {
 
   async show(building: string, model: TileModel, rows: number[]): Promise<void> {
     this.building = building;
-    const { table } = model, row = rows[0]!;
-    const address = table.text('address', row), name = table.text('name', row);
+    const { table } = model,
+      row = rows[0]!;
+    const address = table.text('address', row),
+      name = table.text('name', row);
     const attributes = attribute_list(model, rows);
-    this.fill(building, name || address || building, name ? address : '', [make('p', { class: 'bv-note' }, this.explained ? 'Reading the explanation.' : ''), attributes]);
+    this.fill(building, name || address || building, name ? address : '', [
+      make('p', { class: 'bv-note' }, this.explained ? 'Reading the explanation.' : ''),
+      attributes,
+    ]);
     if (!this.explained) return this.fill(building, name || address || building, name ? address : '', [attributes]);
     let explanation: Explanation | undefined;
     let failure = '';
@@ -55,8 +64,18 @@ export class HousePanel {
     const title = explanation?.title ?? (name || address || building);
     const parts: HTMLElement[] = [];
     if (lines.length) parts.push(make('ul', { class: 'bv-lines' }, ...lines.map((line) => make('li', {}, line))));
-    else parts.push(make('p', { class: 'bv-note' }, failure ? `No explanation: ${failure}` : 'This build has no explanation of this house.'));
-    this.fill(building, title, [name, address].filter((text) => text && !title.includes(text)).join(', '), [...parts, attributes]);
+    else
+      parts.push(
+        make(
+          'p',
+          { class: 'bv-note' },
+          failure ? `No explanation: ${failure}` : 'This build has no explanation of this house.',
+        ),
+      );
+    this.fill(building, title, [name, address].filter((text) => text && !title.includes(text)).join(', '), [
+      ...parts,
+      attributes,
+    ]);
     this.page.say(`${title}. ${lines[0] ?? ''}`);
   }
 
@@ -83,13 +102,33 @@ export class HousePanel {
     const links: HTMLElement[] = [];
     const osm = /^([nwr])(\d+)/.exec(building);
     if (osm) {
-      links.push(make('a', { href: `https://www.openstreetmap.org/${OSM_TYPES[osm[1]!]}/${osm[2]}`, target: '_blank', rel: 'noopener noreferrer' },
-        `${OSM_TYPES[osm[1]!]} ${osm[2]} in OpenStreetMap`));
+      links.push(
+        make(
+          'a',
+          {
+            href: `https://www.openstreetmap.org/${OSM_TYPES[osm[1]!]}/${osm[2]}`,
+            target: '_blank',
+            rel: 'noopener noreferrer',
+          },
+          `${OSM_TYPES[osm[1]!]} ${osm[2]} in OpenStreetMap`,
+        ),
+      );
     }
     panel.replaceChildren(
-      make('header', {}, make('div', {}, make('h2', { tabindex: -1 }, title), ...(below ? [make('p', { class: 'bv-below' }, below)] : [])), close),
+      make(
+        'header',
+        {},
+        make(
+          'div',
+          {},
+          make('h2', { tabindex: -1 }, title),
+          ...(below ? [make('p', { class: 'bv-below' }, below)] : []),
+        ),
+        close,
+      ),
       make('div', { class: 'bv-content', tabindex: 0, role: 'region', 'aria-label': 'About the house' }, ...content),
-      make('footer', {}, ...links, make('span', { class: 'bv-buttons' }, visit, copy)));
+      make('footer', {}, ...links, make('span', { class: 'bv-buttons' }, visit, copy)),
+    );
     panel.hidden = false;
     this.page.root.classList.add('bv-has-panel');
     if (had_focus) close.focus();
@@ -109,16 +148,39 @@ export class HousePanel {
 }
 
 function attribute_list(model: TileModel, rows: number[]): HTMLElement {
-  const { table } = model, row = rows[0]!;
+  const { table } = model,
+    row = rows[0]!;
   const sources = sources_of(table.text('sources', row));
-  const lines = table.row(row).filter(([name]) => !NOT_LISTED.has(name)).map(([name, value]) => {
-    const source = sources.get(name === 'built_roof' ? 'roof_shape' : name === 'style_confidence' ? 'style' : name) ?? '';
-    return make('tr', {}, make('th', { scope: 'row' }, name.replaceAll('_', ' ')), make('td', {}, ...shown(name, value)), make('td', { class: 'bv-source' }, source));
-  });
+  const lines = table
+    .row(row)
+    .filter(([name]) => !NOT_LISTED.has(name))
+    .map(([name, value]) => {
+      const source =
+        sources.get(name === 'built_roof' ? 'roof_shape' : name === 'style_confidence' ? 'style' : name) ?? '';
+      return make(
+        'tr',
+        {},
+        make('th', { scope: 'row' }, name.replaceAll('_', ' ')),
+        make('td', {}, ...shown(name, value)),
+        make('td', { class: 'bv-source' }, source),
+      );
+    });
   const title = rows.length > 1 ? `Attributes of the first of ${rows.length} parts` : 'Attributes';
-  return make('section', {}, make('h3', {}, title),
-    make('table', {}, make('thead', {}, make('tr', {}, ...['Attribute', 'Value', 'Source'].map((text) => make('th', { scope: 'col' }, text)))),
-      make('tbody', {}, ...lines)));
+  return make(
+    'section',
+    {},
+    make('h3', {}, title),
+    make(
+      'table',
+      {},
+      make(
+        'thead',
+        {},
+        make('tr', {}, ...['Attribute', 'Value', 'Source'].map((text) => make('th', { scope: 'col' }, text))),
+      ),
+      make('tbody', {}, ...lines),
+    ),
+  );
 }
 
 function shown(name: string, value: Value): (Node | string)[] {

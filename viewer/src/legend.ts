@@ -31,11 +31,21 @@ export class Legend {
   /** Counts anew in these tiles. */
   update(models: Iterable<TileModel>): void {
     const found = counts(models, this.mode);
-    this.list.replaceChildren(...this.mode.categories.filter((category) => found.get(category)).map((category) => {
-      const swatch = make('span', { class: 'bv-swatch', 'aria-hidden': 'true' });
-      swatch.style.backgroundColor = `#${category.colour.getHexString()}`;
-      return make('li', {}, swatch, make('span', { class: 'bv-label' }, category.label), make('span', { class: 'bv-count' }, String(found.get(category))));
-    }));
+    this.list.replaceChildren(
+      ...this.mode.categories
+        .filter((category) => found.get(category))
+        .map((category) => {
+          const swatch = make('span', { class: 'bv-swatch', 'aria-hidden': 'true' });
+          swatch.style.backgroundColor = `#${category.colour.getHexString()}`;
+          return make(
+            'li',
+            {},
+            swatch,
+            make('span', { class: 'bv-label' }, category.label),
+            make('span', { class: 'bv-count' }, String(found.get(category))),
+          );
+        }),
+    );
     this.list.hidden = this.note.hidden = this.mode.name === 'built';
     this.note.textContent = 'Numbers: houses in the tiles that are shown.';
   }

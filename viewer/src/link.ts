@@ -12,7 +12,10 @@ export function read_link(): Kept {
 }
 
 export function write_link(kept: Kept): void {
-  const parts = [kept.house ? `house=${encodeURIComponent(kept.house)}` : '', kept.colour && kept.colour !== 'built' ? `colour=${kept.colour}` : ''];
+  const parts = [
+    kept.house ? `house=${encodeURIComponent(kept.house)}` : '',
+    kept.colour && kept.colour !== 'built' ? `colour=${kept.colour}` : '',
+  ];
   const fragment = parts.filter(Boolean).join('&');
   if (fragment === location.hash.slice(1)) return;
   // The fragment of a page opened from disk may not be replaced in some browsers.

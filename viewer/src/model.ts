@@ -33,7 +33,12 @@ export class Model {
   private stale = true;
   private started = false;
 
-  constructor(files: Files, frame: Frame, path: string, private readonly limits: Limits) {
+  constructor(
+    files: Files,
+    frame: Frame,
+    path: string,
+    private readonly limits: Limits,
+  ) {
     this.tiles = new TilesRenderer(files.url(path));
     this.tiles.registerPlugin({
       name: 'BLOCKRAND_TILES',
@@ -79,8 +84,11 @@ export class Model {
     });
     this.tiles.addEventListener('load-tileset', changed);
     this.tiles.addEventListener('load-error', ({ error, url }) => {
-      this.on_error((error as Error).name === 'Error' && (error as { path?: string }).path
-        ? error.message : `${decodeURIComponent(String(url)).split('/').slice(-4).join('/')}: ${error.message}`);
+      this.on_error(
+        (error as Error).name === 'Error' && (error as { path?: string }).path
+          ? error.message
+          : `${decodeURIComponent(String(url)).split('/').slice(-4).join('/')}: ${error.message}`,
+      );
       changed();
     });
   }
@@ -154,11 +162,17 @@ export class Model {
 
   /** The middle of a building's foot and its height in the page's frame. */
   place(model: TileModel, rows: number[]): { foot: Vector3; height: number } {
-    let low = Infinity, high = -Infinity;
+    let low = Infinity,
+      high = -Infinity;
     const middle = new Vector3();
     let parts = 0;
     for (const row of rows) {
-      const [x, y, z, top] = model.extents.subarray(4 * row, 4 * row + 4) as unknown as [number, number, number, number];
+      const [x, y, z, top] = model.extents.subarray(4 * row, 4 * row + 4) as unknown as [
+        number,
+        number,
+        number,
+        number,
+      ];
       if (!Number.isFinite(x + y + z + top)) continue;
       low = Math.min(low, y);
       high = Math.max(high, top);

@@ -16,7 +16,10 @@ export class Places {
   private folded: string[] = [];
   private loading: Promise<void> | null = null;
 
-  constructor(private readonly files: Files, private readonly paths: string[]) {}
+  constructor(
+    private readonly files: Files,
+    private readonly paths: string[],
+  ) {}
 
   get count(): number {
     return this.lines.length;
@@ -42,13 +45,17 @@ export class Places {
 
   /** The best hits first: the id itself, then beginnings, then what contains all words. */
   find(query: string, most: number): { hits: PlaceLine[]; all: number } {
-    const folded = fold(query.trim()), words = folded.split(/[\s,]+/).filter(Boolean);
+    const folded = fold(query.trim()),
+      words = folded.split(/[\s,]+/).filter(Boolean);
     const ranked: [number, number][] = [];
     if (words.length) {
       this.folded.forEach((line, i) => {
         if (!words.every((word) => line.includes(word))) return;
         const [id = '', address = '', name = ''] = line.split('\t');
-        ranked.push([id === folded ? 0 : address.startsWith(folded) || name.startsWith(folded) ? 1 : id.startsWith(folded) ? 2 : 3, i]);
+        ranked.push([
+          id === folded ? 0 : address.startsWith(folded) || name.startsWith(folded) ? 1 : id.startsWith(folded) ? 2 : 3,
+          i,
+        ]);
       });
     }
     ranked.sort((a, b) => a[0] - b[0] || this.lines[a[1]]!.length - this.lines[b[1]]!.length || a[1] - b[1]);
@@ -62,11 +69,18 @@ export class Places {
 }
 
 function place_of(line: string): PlaceLine {
-  const [id = '', tile = '', lon = '', lat = '', height = '', address = '', name = ''] = line.replace(/\r$/, '').split('\t');
+  const [id = '', tile = '', lon = '', lat = '', height = '', address = '', name = ''] = line
+    .replace(/\r$/, '')
+    .split('\t');
   return { id, tile, lon: Number(lon), lat: Number(lat), height: Number(height) || 0, address, name };
 }
 
 /** For comparison: no case, no accents, "straße", "strasse" and "str." the same. */
 export function fold(text: string): string {
-  return text.toLowerCase().normalize('NFD').replace(/\p{M}/gu, '').replaceAll('ß', 'ss').replace(/str(\.|(?=\s|$|\d))/g, 'strasse');
+  return text
+    .toLowerCase()
+    .normalize('NFD')
+    .replace(/\p{M}/gu, '')
+    .replaceAll('ß', 'ss')
+    .replace(/str(\.|(?=\s|$|\d))/g, 'strasse');
 }

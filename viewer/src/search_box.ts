@@ -7,8 +7,15 @@ const MOST = 30;
 export class SearchBox {
   on_choose = (_place: PlaceLine): void => {};
   private readonly input = make('input', {
-    type: 'search', placeholder: 'Address, name or id', 'aria-label': 'Search for an address, a name or an id', autocomplete: 'off', spellcheck: 'false',
-    role: 'combobox', 'aria-expanded': 'false', 'aria-controls': 'bv-hits', 'aria-autocomplete': 'list',
+    type: 'search',
+    placeholder: 'Address, name or id',
+    'aria-label': 'Search for an address, a name or an id',
+    autocomplete: 'off',
+    spellcheck: 'false',
+    role: 'combobox',
+    'aria-expanded': 'false',
+    'aria-controls': 'bv-hits',
+    'aria-autocomplete': 'list',
   });
   private readonly list = make('ul', { id: 'bv-hits', role: 'listbox', 'aria-label': 'Found houses', hidden: true });
   private readonly told = make('p', { class: 'bv-note', hidden: true });
@@ -16,7 +23,10 @@ export class SearchBox {
   private active = -1;
   private timer = 0;
 
-  constructor(private readonly page: Page, private readonly places: Places) {
+  constructor(
+    private readonly page: Page,
+    private readonly places: Places,
+  ) {
     page.search.append(make('div', { class: 'bv-field' }, icon('search'), this.input), this.told, this.list);
     this.input.addEventListener('input', () => {
       clearTimeout(this.timer);
@@ -50,17 +60,34 @@ export class SearchBox {
     const { hits, all } = this.places.find(query, MOST);
     this.hits = hits;
     this.activate(-1);
-    this.list.replaceChildren(...hits.map((hit, i) => {
-      const first = hit.name || hit.address || hit.id;
-      const item = make('li', { role: 'option', id: `bv-hit-${i}`, 'aria-selected': 'false' },
-        make('span', {}, first),
-        make('small', {}, [hit.name ? hit.address : '', first === hit.id ? '' : hit.id, hit.height ? `${Math.round(hit.height)} m high` : ''].filter(Boolean).join(' · ')));
-      item.addEventListener('click', () => this.choose(hit));
-      return item;
-    }));
+    this.list.replaceChildren(
+      ...hits.map((hit, i) => {
+        const first = hit.name || hit.address || hit.id;
+        const item = make(
+          'li',
+          { role: 'option', id: `bv-hit-${i}`, 'aria-selected': 'false' },
+          make('span', {}, first),
+          make(
+            'small',
+            {},
+            [
+              hit.name ? hit.address : '',
+              first === hit.id ? '' : hit.id,
+              hit.height ? `${Math.round(hit.height)} m high` : '',
+            ]
+              .filter(Boolean)
+              .join(' · '),
+          ),
+        );
+        item.addEventListener('click', () => this.choose(hit));
+        return item;
+      }),
+    );
     this.list.hidden = !hits.length;
     this.input.setAttribute('aria-expanded', String(hits.length > 0));
-    this.tell(!all ? 'Nothing found.' : all > hits.length ? `${all} found, the first ${hits.length} shown.` : `${all} found.`);
+    this.tell(
+      !all ? 'Nothing found.' : all > hits.length ? `${all} found, the first ${hits.length} shown.` : `${all} found.`,
+    );
   }
 
   private tell(text: string): void {

@@ -20,7 +20,10 @@ export async function start(element: HTMLElement): Promise<View | null> {
     else page.fail('The houses cannot be shown', (error as Error).message);
     const message = page.failures[0] ?? '';
     (window as unknown as { blockrandView: unknown }).blockrandView = {
-      ready: Promise.reject(new Error(message)), frameTimes: () => [], memory: () => ({ bytes: 0, tiles: 0 }), state: () => ({ failures: page.failures }),
+      ready: Promise.reject(new Error(message)),
+      frameTimes: () => [],
+      memory: () => ({ bytes: 0, tiles: 0 }),
+      state: () => ({ failures: page.failures }),
     };
     (window as unknown as { blockrandView: { ready: Promise<void> } }).blockrandView.ready.catch(() => {});
     return null;

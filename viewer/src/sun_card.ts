@@ -14,8 +14,18 @@ export class SunCard {
   private readonly time_out = make('output', {});
   private readonly day_out = make('output', {});
 
-  constructor(page: Page, private readonly centre: Place) {
-    const time = make('input', { type: 'range', min: 0, max: 1435, step: 5, value: this.minutes, 'aria-label': 'Time of day' });
+  constructor(
+    page: Page,
+    private readonly centre: Place,
+  ) {
+    const time = make('input', {
+      type: 'range',
+      min: 0,
+      max: 1435,
+      step: 5,
+      value: this.minutes,
+      'aria-label': 'Time of day',
+    });
     const day = make('input', { type: 'range', min: 1, max: 365, step: 1, value: this.day, 'aria-label': 'Date' });
     time.addEventListener('input', () => this.set(this.day, Number(time.value)));
     day.addEventListener('input', () => this.set(Number(day.value), this.minutes));
@@ -25,7 +35,8 @@ export class SunCard {
       make('h2', {}, 'Sun'),
       make('div', { class: 'bv-slider' }, make('span', {}, 'Time'), this.time_out, time),
       make('div', { class: 'bv-slider' }, make('span', {}, 'Date'), this.day_out, day),
-      this.said);
+      this.said,
+    );
     this.show();
   }
 
@@ -44,8 +55,10 @@ export class SunCard {
   }
 
   private show(): void {
-    const { altitude, azimuth } = this.position, zone = zone_of(this.centre.lon);
-    const time = `${time_text(this.minutes)} UTC${zone < 0 ? '−' : '+'}${Math.abs(zone)}`, day = day_text(this.day);
+    const { altitude, azimuth } = this.position,
+      zone = zone_of(this.centre.lon);
+    const time = `${time_text(this.minutes)} UTC${zone < 0 ? '−' : '+'}${Math.abs(zone)}`,
+      day = day_text(this.day);
     this.time_out.textContent = time;
     this.day_out.textContent = day;
     this.time_input.value = String(this.minutes);
@@ -53,8 +66,9 @@ export class SunCard {
     this.time_input.setAttribute('aria-valuetext', time);
     this.day_input.setAttribute('aria-valuetext', day);
     const wind = WINDS[Math.round((azimuth * DEGREES) / 45) % 8];
-    this.said.textContent = altitude > 0
-      ? `${Math.round(altitude * DEGREES)}° above the horizon, in the ${wind} (${Math.round(azimuth * DEGREES)}°).`
-      : `The sun is ${Math.round(-altitude * DEGREES)}° below the horizon.`;
+    this.said.textContent =
+      altitude > 0
+        ? `${Math.round(altitude * DEGREES)}° above the horizon, in the ${wind} (${Math.round(azimuth * DEGREES)}°).`
+        : `The sun is ${Math.round(-altitude * DEGREES)}° below the horizon.`;
   }
 }

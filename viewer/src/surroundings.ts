@@ -1,7 +1,20 @@
 // What houses stand in: sky, ground and light, all following the sun.
 import {
-  BackSide, BufferAttribute, BufferGeometry, Color, DirectionalLight, Fog, HemisphereLight, Mesh, MeshLambertMaterial, PerspectiveCamera,
-  Scene, ShaderMaterial, SphereGeometry, Vector3, WebGLRenderer,
+  BackSide,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DirectionalLight,
+  Fog,
+  HemisphereLight,
+  Mesh,
+  MeshLambertMaterial,
+  PerspectiveCamera,
+  Scene,
+  ShaderMaterial,
+  SphereGeometry,
+  Vector3,
+  WebGLRenderer,
 } from 'three';
 import { Frame } from './frame';
 import { PAINT } from './paint';
@@ -48,11 +61,26 @@ export class Surroundings {
   private readonly shadow_middle = new Vector3(Infinity, 0, 0);
   private shadow_reach = 0;
 
-  constructor(private readonly scene: Scene, private readonly renderer: WebGLRenderer, shadow_pixels: number) {
-    const sky = new Mesh(new SphereGeometry(1, 48, 24), new ShaderMaterial({
-      vertexShader: SKY_VERTEX, fragmentShader: SKY_FRAGMENT, side: BackSide, depthWrite: false,
-      uniforms: { sky_zenith: PAINT.sky_zenith, sky_horizon: PAINT.sky_horizon, sun_colour: PAINT.sun_colour, sun_direction: PAINT.sun_direction },
-    }));
+  constructor(
+    private readonly scene: Scene,
+    private readonly renderer: WebGLRenderer,
+    shadow_pixels: number,
+  ) {
+    const sky = new Mesh(
+      new SphereGeometry(1, 48, 24),
+      new ShaderMaterial({
+        vertexShader: SKY_VERTEX,
+        fragmentShader: SKY_FRAGMENT,
+        side: BackSide,
+        depthWrite: false,
+        uniforms: {
+          sky_zenith: PAINT.sky_zenith,
+          sky_horizon: PAINT.sky_horizon,
+          sun_colour: PAINT.sun_colour,
+          sun_direction: PAINT.sun_direction,
+        },
+      }),
+    );
     // Houses first, then what they leave free.
     sky.renderOrder = 2;
     sky.frustumCulled = false;
@@ -71,15 +99,25 @@ export class Surroundings {
 
   set_sun(position: SunPosition): void {
     const degrees = (position.altitude * 180) / Math.PI;
-    const above = Math.max(0, DAYLIGHT.findIndex(([altitude], i) => i > 0 && degrees <= altitude));
-    const high = DAYLIGHT[degrees >= 40 ? DAYLIGHT.length - 1 : above]!, low = DAYLIGHT[degrees >= 40 ? DAYLIGHT.length - 1 : Math.max(0, above - 1)]!;
+    const above = Math.max(
+      0,
+      DAYLIGHT.findIndex(([altitude], i) => i > 0 && degrees <= altitude),
+    );
+    const high = DAYLIGHT[degrees >= 40 ? DAYLIGHT.length - 1 : above]!,
+      low = DAYLIGHT[degrees >= 40 ? DAYLIGHT.length - 1 : Math.max(0, above - 1)]!;
     const t = high === low ? 0 : Math.min(1, Math.max(0, (degrees - low[0]) / (high[0] - low[0])));
     const colour = (at: 1 | 2 | 3) => new Color(low[at]).lerp(new Color(high[at]), t);
     const number = (at: 4 | 5 | 6) => low[at] + t * (high[at] - low[at]);
     const night = degrees < -1;
     // At night the moon lights from the south-west, faintly: shapes stay readable.
-    const { altitude, azimuth } = night ? { altitude: 0.7, azimuth: 3.9 } : { altitude: Math.max(position.altitude, 0.02), azimuth: position.azimuth };
-    this.direction.set(Math.sin(azimuth) * Math.cos(altitude), Math.sin(altitude), -Math.cos(azimuth) * Math.cos(altitude));
+    const { altitude, azimuth } = night
+      ? { altitude: 0.7, azimuth: 3.9 }
+      : { altitude: Math.max(position.altitude, 0.02), azimuth: position.azimuth };
+    this.direction.set(
+      Math.sin(azimuth) * Math.cos(altitude),
+      Math.sin(altitude),
+      -Math.cos(azimuth) * Math.cos(altitude),
+    );
     PAINT.sky_zenith.value.copy(colour(1));
     PAINT.sky_horizon.value.copy(colour(2));
     PAINT.sun_colour.value.copy(colour(3)).multiplyScalar(night ? 0 : number(4) / 3);
@@ -104,8 +142,11 @@ export class Surroundings {
     camera.far = 30000 + 20 * height;
     camera.updateProjectionMatrix();
     const reach = Math.min(1500, Math.max(90, distance * 0.95));
-    const outgrown = this.shadow_reach === 0 || reach > 1.15 * this.shadow_reach || reach < 0.6 * this.shadow_reach
-      || this.shadow_middle.distanceTo(looked_at) > 0.2 * this.shadow_reach;
+    const outgrown =
+      this.shadow_reach === 0 ||
+      reach > 1.15 * this.shadow_reach ||
+      reach < 0.6 * this.shadow_reach ||
+      this.shadow_middle.distanceTo(looked_at) > 0.2 * this.shadow_reach;
     if (outgrown) {
       this.shadow_reach = reach;
       this.shadow_middle.copy(looked_at);
@@ -115,7 +156,7 @@ export class Surroundings {
       box.near = 1;
       box.far = 4 * reach + 800;
       box.updateProjectionMatrix();
-      this.sun.shadow.normalBias = Math.max(0.05, reach / this.sun.shadow.mapSize.x * 1.6);
+      this.sun.shadow.normalBias = Math.max(0.05, (reach / this.sun.shadow.mapSize.x) * 1.6);
       this.sun.position.copy(looked_at).addScaledVector(this.direction, 2 * reach + 400);
       this.sun.target.position.copy(looked_at);
       this.sun.target.updateMatrixWorld();
@@ -138,11 +179,13 @@ function curved_disc(): BufferGeometry {
   const rings = [0];
   for (let r = 60; r < 40000; r += Math.min(700, Math.max(60, 0.12 * r))) rings.push(r);
   const sectors = 128;
-  const positions = new Float32Array(3 * rings.length * sectors), normals = new Float32Array(positions.length);
+  const positions = new Float32Array(3 * rings.length * sectors),
+    normals = new Float32Array(positions.length);
   const index: number[] = [];
   rings.forEach((r, ring) => {
     for (let s = 0; s < sectors; ++s) {
-      const at = ring * sectors + s, angle = (2 * Math.PI * s) / sectors;
+      const at = ring * sectors + s,
+        angle = (2 * Math.PI * s) / sectors;
       positions.set([r * Math.cos(angle), Frame.ground_at(r, 0), r * Math.sin(angle)], 3 * at);
       normals[3 * at + 1] = 1;
       const next = ring * sectors + ((s + 1) % sectors);

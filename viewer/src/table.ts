@@ -23,7 +23,8 @@ export class Table {
 
   /** undefined: no such column, or no value in this row. */
   get(name: string, row: number): Value | undefined {
-    const column = this.columns[name], kind = this.described[name];
+    const column = this.columns[name],
+      kind = this.described[name];
     if (!column || !kind || row < 0 || row >= this.count) return undefined;
     if (kind.type === 'STRING') {
       const offsets = this.glb.view(column.stringOffsets);
@@ -73,16 +74,27 @@ export function sources_of(text: string): Map<string, string> {
 function number_at(bytes: Uint8Array, index: number, type: string): number {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   switch (type) {
-    case 'UINT8': return view.getUint8(index);
-    case 'INT8': return view.getInt8(index);
-    case 'UINT16': return view.getUint16(2 * index, true);
-    case 'INT16': return view.getInt16(2 * index, true);
-    case 'UINT32': return view.getUint32(4 * index, true);
-    case 'INT32': return view.getInt32(4 * index, true);
-    case 'UINT64': return Number(view.getBigUint64(8 * index, true));
-    case 'INT64': return Number(view.getBigInt64(8 * index, true));
-    case 'FLOAT32': return view.getFloat32(4 * index, true);
-    case 'FLOAT64': return view.getFloat64(8 * index, true);
-    default: throw new Error(`has a column of type ${type}`);
+    case 'UINT8':
+      return view.getUint8(index);
+    case 'INT8':
+      return view.getInt8(index);
+    case 'UINT16':
+      return view.getUint16(2 * index, true);
+    case 'INT16':
+      return view.getInt16(2 * index, true);
+    case 'UINT32':
+      return view.getUint32(4 * index, true);
+    case 'INT32':
+      return view.getInt32(4 * index, true);
+    case 'UINT64':
+      return Number(view.getBigUint64(8 * index, true));
+    case 'INT64':
+      return Number(view.getBigInt64(8 * index, true));
+    case 'FLOAT32':
+      return view.getFloat32(4 * index, true);
+    case 'FLOAT64':
+      return view.getFloat64(8 * index, true);
+    default:
+      throw new Error(`has a column of type ${type}`);
   }
 }

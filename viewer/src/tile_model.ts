@@ -1,8 +1,19 @@
 // A tile as few meshes: its bodies in one, its windows and ornaments in cells of some metres, each coarse from afar and whole
 // from near. Every vertex knows its feature, so houses are coloured by a small texture of one texel per feature.
 import {
-  BufferAttribute, BufferGeometry, DataTexture, Group, Material, Matrix3, Matrix4, Mesh, NearestFilter, Quaternion, RGBAFormat,
-  UnsignedByteType, Vector3,
+  BufferAttribute,
+  BufferGeometry,
+  DataTexture,
+  Group,
+  Material,
+  Matrix3,
+  Matrix4,
+  Mesh,
+  NearestFilter,
+  Quaternion,
+  RGBAFormat,
+  UnsignedByteType,
+  Vector3,
 } from 'three';
 import type { Glb, Json, Values } from './glb';
 import { painted_material } from './paint';
@@ -53,11 +64,20 @@ export class TileModel {
   private source_bytes = 0;
 
   /** name: tile, as in explanations: "15_35206_25947". */
-  constructor(private readonly glb: Glb, readonly name: string) {
+  constructor(
+    private readonly glb: Glb,
+    readonly name: string,
+  ) {
     this.table = new Table(glb);
     const rows = Math.max(1, this.table.count);
     this.texels = new Uint8Array(4 * TEXTURE_WIDTH * Math.ceil(rows / TEXTURE_WIDTH));
-    this.features = new DataTexture(this.texels, TEXTURE_WIDTH, this.texels.length / 4 / TEXTURE_WIDTH, RGBAFormat, UnsignedByteType);
+    this.features = new DataTexture(
+      this.texels,
+      TEXTURE_WIDTH,
+      this.texels.length / 4 / TEXTURE_WIDTH,
+      RGBAFormat,
+      UnsignedByteType,
+    );
     this.features.minFilter = this.features.magFilter = NearestFilter;
     this.features.needsUpdate = true;
     this.material = painted_material(this.features);
@@ -107,7 +127,8 @@ export class TileModel {
 
   private make_body(): Mesh | null {
     const parts: { primitive: Json; matrix: Matrix4; index: Values | null; positions: Values }[] = [];
-    let vertices = 0, corners = 0;
+    let vertices = 0,
+      corners = 0;
     for (const { node, matrix } of this.glb.placed_nodes()) {
       const { primitives } = this.glb.json.meshes[node.mesh];
       if (node.extensions?.EXT_mesh_gpu_instancing) {
@@ -136,7 +157,8 @@ export class TileModel {
       const first = out.count;
       this.add_primitive(out, part.primitive, part.matrix, part.positions);
       const count = part.index ? part.index.count : part.positions.count;
-      for (let i = 0; i < count; ++i) index[corner++] = first + (part.index ? part.index.array[i * part.index.stride]! : i);
+      for (let i = 0; i < count; ++i)
+        index[corner++] = first + (part.index ? part.index.array[i * part.index.stride]! : i);
     }
     this.measure(out);
     const mesh = new Mesh(out.geometry(index), this.material);
@@ -148,11 +170,13 @@ export class TileModel {
 
   private add_primitive(out: Vertices, primitive: Json, matrix: Matrix4, positions: Values): void {
     const normals = primitive.attributes.NORMAL === undefined ? null : this.glb.values(primitive.attributes.NORMAL);
-    const ids = primitive.attributes._FEATURE_ID_0 === undefined ? null : this.glb.values(primitive.attributes._FEATURE_ID_0);
+    const ids =
+      primitive.attributes._FEATURE_ID_0 === undefined ? null : this.glb.values(primitive.attributes._FEATURE_ID_0);
     const colours = primitive.attributes.COLOR_0 === undefined ? null : this.glb.values(primitive.attributes.COLOR_0);
     const paint = painter(this.glb, primitive, colours, KIND.body);
     const normal_matrix = new Matrix3().getNormalMatrix(matrix);
-    const p = new Vector3(), n = new Vector3(0, 1, 0);
+    const p = new Vector3(),
+      n = new Vector3(0, 1, 0);
     for (let v = 0; v < positions.count; ++v) {
       read3(positions, v, p).applyMatrix4(matrix);
       if (normals) read3(normals, v, n).applyMatrix3(normal_matrix).normalize();
@@ -164,7 +188,8 @@ export class TileModel {
   /** Where each feature stands, and how far each vertex is above its feature's foot. */
   private measure(out: Vertices): void {
     const rows = this.table.count;
-    const low = new Float32Array(3 * rows).fill(Infinity), high = new Float32Array(3 * rows).fill(-Infinity);
+    const low = new Float32Array(3 * rows).fill(Infinity),
+      high = new Float32Array(3 * rows).fill(-Infinity);
     for (let v = 0; v < out.count; ++v) {
       const row = out.features[2 * v]!;
       if (row >= rows) continue;
@@ -176,10 +201,18 @@ export class TileModel {
     }
     for (let row = 0; row < rows; ++row) {
       this.bottoms[row] = low[3 * row + 1]!;
-      this.extents.set([(low[3 * row]! + high[3 * row]!) / 2, low[3 * row + 1]!, (low[3 * row + 2]! + high[3 * row + 2]!) / 2,
-        high[3 * row + 1]!], 4 * row);
+      this.extents.set(
+        [
+          (low[3 * row]! + high[3 * row]!) / 2,
+          low[3 * row + 1]!,
+          (low[3 * row + 2]! + high[3 * row + 2]!) / 2,
+          high[3 * row + 1]!,
+        ],
+        4 * row,
+      );
     }
-    for (let v = 0; v < out.count; ++v) out.features[2 * v + 1] = this.above_foot(out.features[2 * v]!, out.positions[3 * v + 1]!);
+    for (let v = 0; v < out.count; ++v)
+      out.features[2 * v + 1] = this.above_foot(out.features[2 * v]!, out.positions[3 * v + 1]!);
   }
 
   /** Centimetres above the feature's foot. */
@@ -193,20 +226,33 @@ export class TileModel {
   private add_instances(node: Json, matrix: Matrix4): void {
     const { attributes } = node.extensions.EXT_mesh_gpu_instancing as Json;
     const read = (name: string) => (attributes[name] === undefined ? null : this.glb.values(attributes[name]));
-    const moved = read('TRANSLATION'), turned = read('ROTATION'), scaled = read('SCALE'), ids = read('_FEATURE_ID_0');
+    const moved = read('TRANSLATION'),
+      turned = read('ROTATION'),
+      scaled = read('SCALE'),
+      ids = read('_FEATURE_ID_0');
     const count = (moved ?? turned ?? scaled)?.count ?? 0;
     const element = this.element_number(node.mesh);
-    const t = new Vector3(), q = new Quaternion(), s = new Vector3();
+    const t = new Vector3(),
+      q = new Quaternion(),
+      s = new Vector3();
     for (let i = 0; i < count; ++i) {
       if (moved) read3(moved, i, t);
       if (turned) {
         const { array, stride, scale } = turned;
-        q.set(array[i * stride]! * scale, array[i * stride + 1]! * scale, array[i * stride + 2]! * scale, array[i * stride + 3]! * scale)
-          .normalize();
+        q.set(
+          array[i * stride]! * scale,
+          array[i * stride + 1]! * scale,
+          array[i * stride + 2]! * scale,
+          array[i * stride + 3]! * scale,
+        ).normalize();
       }
       if (scaled) read3(scaled, i, s);
       else s.set(1, 1, 1);
-      this.add_instance(matrix.clone().multiply(new Matrix4().compose(t, q, s)), element, ids ? ids.array[i * ids.stride]! : NO_FEATURE);
+      this.add_instance(
+        matrix.clone().multiply(new Matrix4().compose(t, q, s)),
+        element,
+        ids ? ids.array[i * ids.stride]! : NO_FEATURE,
+      );
     }
   }
 
@@ -224,7 +270,8 @@ export class TileModel {
 
   private make_cells(): void {
     if (!this.matrices.length) return;
-    for (let view = 0; view < (this.glb.json.bufferViews?.length ?? 0); ++view) this.source_bytes += this.glb.view(view).length;
+    for (let view = 0; view < (this.glb.json.bufferViews?.length ?? 0); ++view)
+      this.source_bytes += this.glb.view(view).length;
     const places = new Map<string, number[]>();
     this.matrices.forEach((matrix, instance) => {
       const key = `${Math.floor(matrix.elements[12]! / CELL)} ${Math.floor(matrix.elements[14]! / CELL)}`;
@@ -241,7 +288,8 @@ export class TileModel {
   }
 
   private detail_mesh(instances: number[], shape_of: (element: number) => Shape): Mesh {
-    let vertices = 0, corners = 0;
+    let vertices = 0,
+      corners = 0;
     for (const instance of instances) {
       const shape = shape_of(this.element_of[instance]!);
       vertices += shape.positions.length / 3;
@@ -249,16 +297,21 @@ export class TileModel {
     }
     const out = new Vertices(vertices);
     const index = vertices > 65535 ? new Uint32Array(corners) : new Uint16Array(corners);
-    const normal_matrix = new Matrix3(), p = new Vector3(), n = new Vector3();
+    const normal_matrix = new Matrix3(),
+      p = new Vector3(),
+      n = new Vector3();
     let corner = 0;
     for (const instance of instances) {
       const shape = shape_of(this.element_of[instance]!);
-      const matrix = this.matrices[instance]!, row = this.feature_of[instance]!;
+      const matrix = this.matrices[instance]!,
+        row = this.feature_of[instance]!;
       normal_matrix.getNormalMatrix(matrix);
       const first = out.count;
       for (let v = 0; v < shape.positions.length; v += 3) {
         p.set(shape.positions[v]!, shape.positions[v + 1]!, shape.positions[v + 2]!).applyMatrix4(matrix);
-        n.set(shape.normals[v]!, shape.normals[v + 1]!, shape.normals[v + 2]!).applyMatrix3(normal_matrix).normalize();
+        n.set(shape.normals[v]!, shape.normals[v + 1]!, shape.normals[v + 2]!)
+          .applyMatrix3(normal_matrix)
+          .normalize();
         const at = out.add(p, n, row);
         out.features[2 * at + 1] = this.above_foot(row, p.y);
       }
@@ -278,8 +331,12 @@ export class TileModel {
 
   /** An element with its materials as paint, in its own frame; of vertices that its materials share, those that each uses. */
   private shape(element: Json): Shape {
-    const positions: number[] = [], normals: number[] = [], paint: number[] = [], index: number[] = [];
-    const p = new Vector3(), n = new Vector3(0, 0, 1);
+    const positions: number[] = [],
+      normals: number[] = [],
+      paint: number[] = [],
+      index: number[] = [];
+    const p = new Vector3(),
+      n = new Vector3(0, 0, 1);
     const texel = new Uint8Array(4);
     for (const primitive of element.primitives) {
       const from = this.glb.values(primitive.attributes.POSITION);
@@ -303,7 +360,12 @@ export class TileModel {
         index.push(copies[v]!);
       }
     }
-    return { positions: new Float32Array(positions), normals: new Float32Array(normals), paint: new Uint8Array(paint), index: new Uint32Array(index) };
+    return {
+      positions: new Float32Array(positions),
+      normals: new Float32Array(normals),
+      paint: new Uint8Array(paint),
+      index: new Uint32Array(index),
+    };
   }
 }
 
@@ -347,7 +409,12 @@ class Vertices {
 }
 
 /** Writes a vertex's colour: square roots of linear light, which keep dark tones in eight bits, and the kind. */
-function painter(glb: Glb, primitive: Json, colours: Values | null, kind: number): (v: number, into: Uint8Array, at: number) => void {
+function painter(
+  glb: Glb,
+  primitive: Json,
+  colours: Values | null,
+  kind: number,
+): (v: number, into: Uint8Array, at: number) => void {
   const material: Json = glb.json.materials?.[primitive.material] ?? {};
   const base: number[] = material.pbrMetallicRoughness?.baseColorFactor ?? [1, 1, 1, 1];
   const name = String(material.name ?? '');
@@ -362,7 +429,8 @@ function painter(glb: Glb, primitive: Json, colours: Values | null, kind: number
 }
 
 function read3(values: Values, index: number, into: Vector3): Vector3 {
-  const at = index * values.stride, { array, scale } = values;
+  const at = index * values.stride,
+    { array, scale } = values;
   return into.set(array[at]! * scale, array[at + 1]! * scale, array[at + 2]! * scale);
 }
 
@@ -370,17 +438,24 @@ function read3(values: Values, index: number, into: Vector3): Vector3 {
 function coarser(shape: Shape): Shape {
   const count = shape.index.length / 3;
   if (count <= COARSE_TRIANGLES) return shape;
-  const a = new Vector3(), b = new Vector3(), c = new Vector3();
+  const a = new Vector3(),
+    b = new Vector3(),
+    c = new Vector3();
   const corner = (i: number, into: Vector3) => into.fromArray(shape.positions, 3 * shape.index[i]!);
   const areas = new Float32Array(count);
   let total = 0;
   for (let t = 0; t < count; ++t) {
     corner(3 * t, a);
-    areas[t] = corner(3 * t + 1, b).sub(a).cross(corner(3 * t + 2, c).sub(a)).length();
+    areas[t] = corner(3 * t + 1, b)
+      .sub(a)
+      .cross(corner(3 * t + 2, c).sub(a))
+      .length();
     total += areas[t]!;
   }
   const order = Array.from(areas.keys()).sort((x, y) => areas[y]! - areas[x]!);
-  const index: number[] = [], kept: number[] = [], copies = new Map<number, number>();
+  const index: number[] = [],
+    kept: number[] = [],
+    copies = new Map<number, number>();
   let covered = 0;
   for (const t of order.slice(0, COARSE_TRIANGLES)) {
     for (let i = 3 * t; i < 3 * t + 3; ++i) {

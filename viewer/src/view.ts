@@ -1,6 +1,16 @@
 // The view as a whole: what is chosen, where the camera is, and when a new picture is drawn. Pictures are drawn only when
 // something changed.
-import { NeutralToneMapping, PCFShadowMap, PerspectiveCamera, Raycaster, Scene, SRGBColorSpace, Vector2, Vector3, WebGLRenderer } from 'three';
+import {
+  NeutralToneMapping,
+  PCFShadowMap,
+  PerspectiveCamera,
+  Raycaster,
+  Scene,
+  SRGBColorSpace,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from 'three';
 import { Mode, mode_named, paint_tile } from './colours';
 import type { Files } from './files';
 import { FileMissing } from './files';
@@ -45,10 +55,15 @@ export function describe(told: unknown): Description {
   if (typeof given.tileset !== 'string') throw new FileMissing('view.json', 'names no tileset');
   if (!Number.isFinite(lon) || !Number.isFinite(lat)) throw new FileMissing('view.json', 'has no centre');
   return {
-    name: given.name ?? '', lod: given.lod ?? 0, buildings: given.buildings ?? 0,
+    name: given.name ?? '',
+    lod: given.lod ?? 0,
+    buildings: given.buildings ?? 0,
     attribution: given.attribution ?? '© OpenStreetMap contributors, ODbL 1.0',
     centre: { lon: lon!, lat: lat!, height: Number.isFinite(height) ? height! : 0 },
-    tileset: given.tileset, places: given.places ?? [], explained: given.explained ?? null, data_time: given.data_time ?? '',
+    tileset: given.tileset,
+    places: given.places ?? [],
+    explained: given.explained ?? null,
+    data_time: given.data_time ?? '',
   };
 }
 
@@ -83,10 +98,18 @@ export class View {
   private readonly ready: Promise<void>;
   private tell_ready = (): void => {};
 
-  constructor(private readonly page: Page, private readonly files: Files, private readonly told: Description) {
+  constructor(
+    private readonly page: Page,
+    files: Files,
+    private readonly told: Description,
+  ) {
     this.ready = new Promise((done) => (this.tell_ready = done));
     this.software = drawn_by_software();
-    this.renderer = new WebGLRenderer({ canvas: page.canvas, antialias: !this.software, powerPreference: 'high-performance' });
+    this.renderer = new WebGLRenderer({
+      canvas: page.canvas,
+      antialias: !this.software,
+      powerPreference: 'high-performance',
+    });
     this.renderer.outputColorSpace = SRGBColorSpace;
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.toneMappingExposure = 1.0;
@@ -94,8 +117,12 @@ export class View {
     this.renderer.shadowMap.type = PCFShadowMap;
     this.surroundings = new Surroundings(this.scene, this.renderer, this.software ? 1536 : 2048);
     this.frame = new Frame(told.centre);
-    this.model = new Model(files, this.frame, told.tileset, this.software
-      ? { error: 18, near: 70, bytes: 300 * MEGABYTE } : { error: 10, near: 140, bytes: 512 * MEGABYTE });
+    this.model = new Model(
+      files,
+      this.frame,
+      told.tileset,
+      this.software ? { error: 18, near: 70, bytes: 300 * MEGABYTE } : { error: 10, near: 140, bytes: 512 * MEGABYTE },
+    );
     this.scene.add(this.model.tiles.group);
     this.flight = new Flight(this.camera, page.canvas);
     this.walk = new Walk(this.camera, page.canvas);
@@ -131,19 +158,31 @@ export class View {
       frameTimes: () => [...this.times],
       memory: () => ({ bytes: this.model.bytes, tiles: this.model.models.size }),
       state: () => this.state(),
-      look: (x: number, z: number, distance: number, azimuth: number, altitude: number) => this.flight.look(new Vector3(x, Frame.ground_at(x, z), z), distance, azimuth, altitude, true),
+      look: (x: number, z: number, distance: number, azimuth: number, altitude: number) =>
+        this.flight.look(new Vector3(x, Frame.ground_at(x, z), z), distance, azimuth, altitude, true),
     };
   }
 
   private state() {
     const { altitude, azimuth } = this.sun.position;
     return {
-      settled: this.model.settled && !this.flight.flying && !this.flight.moved && !this.dirty && this.sharp, first_picture_ms: this.first_after, software: this.software, pictures: this.drawn,
-      house: this.chosen, colour: this.legend.mode.name, legend: this.legend.entries, walking: this.walk.active,
-      camera: this.camera.position.toArray(), target: this.flight.target.toArray(), direction: this.camera.getWorldDirection(new Vector3()).toArray(),
+      settled: this.model.settled && !this.flight.flying && !this.flight.moved && !this.dirty && this.sharp,
+      first_picture_ms: this.first_after,
+      software: this.software,
+      pictures: this.drawn,
+      house: this.chosen,
+      colour: this.legend.mode.name,
+      legend: this.legend.entries,
+      walking: this.walk.active,
+      camera: this.camera.position.toArray(),
+      target: this.flight.target.toArray(),
+      direction: this.camera.getWorldDirection(new Vector3()).toArray(),
       sun: { day: this.sun.day, minutes: this.sun.minutes, altitude, azimuth },
-      shown: this.model.shown.map((model) => model.name), triangles: this.renderer.info.render.triangles, calls: this.renderer.info.render.calls,
-      found: this.search.found.map(({ id }) => id), failures: this.page.failures,
+      shown: this.model.shown.map((model) => model.name),
+      triangles: this.renderer.info.render.triangles,
+      calls: this.renderer.info.render.calls,
+      found: this.search.found.map(({ id }) => id),
+      failures: this.page.failures,
       on_screen: this.chosen ? this.on_screen(this.chosen) : null,
     };
   }
@@ -151,12 +190,14 @@ export class View {
   private describe_build(): void {
     const { name, buildings, lod, data_time, attribution } = this.told;
     this.page.heading.textContent = name || 'Houses';
-    const facts: string[] = [buildings ? `${buildings.toLocaleString('en')} houses` : '', lod ? `LoD${lod}` : '', ];
+    const facts: string[] = [buildings ? `${buildings.toLocaleString('en')} houses` : '', lod ? `LoD${lod}` : ''];
     this.page.facts.textContent = facts.filter(Boolean).join(' · ');
-    if (data_time) this.page.facts.append(make('span', {}, `${facts.some(Boolean) ? ' · ' : ''}data of ${data_time.slice(0, 10)}`));
+    if (data_time)
+      this.page.facts.append(make('span', {}, `${facts.some(Boolean) ? ' · ' : ''}data of ${data_time.slice(0, 10)}`));
     this.page.attribution.append(attribution);
     if (!this.told.places.length) this.page.search.hidden = true;
-    if (!this.page.root.closest('[data-blockrand-embedded]') && !this.files.is_embedded) document.title = name ? `${name} · Blockrand` : 'Blockrand';
+    if (!page_is_ours()) this.flight.share_page();
+    else document.title = name ? `${name} · Blockrand` : 'Blockrand';
   }
 
   private connect(): void {
@@ -194,13 +235,20 @@ export class View {
         button.setPointerCapture(event.pointerId);
         this.walk.hold(code, true);
       });
-      for (const end of ['pointerup', 'pointercancel'] as const) button.addEventListener(end, () => this.walk.hold(code, false));
+      for (const end of ['pointerup', 'pointercancel'] as const)
+        button.addEventListener(end, () => this.walk.hold(code, false));
       return button;
     };
     const leave = make('button', { type: 'button' }, 'Leave');
     leave.addEventListener('click', () => this.walk.stop());
-    page.walk_hint.append(make('span', { class: 'bv-walk-keys' }, 'W A S D or arrows walk, the mouse looks, Esc leaves'),
-      hold('KeyA', '◀', 'Step left'), hold('KeyW', '▲', 'Walk forwards'), hold('KeyS', '▼', 'Walk backwards'), hold('KeyD', '▶', 'Step right'), leave);
+    page.walk_hint.append(
+      make('span', { class: 'bv-walk-keys' }, 'W A S D or arrows walk, the mouse looks, Esc leaves'),
+      hold('KeyA', '◀', 'Step left'),
+      hold('KeyW', '▲', 'Walk forwards'),
+      hold('KeyS', '▼', 'Walk backwards'),
+      hold('KeyD', '▶', 'Step right'),
+      leave,
+    );
     this.watch_clicks();
     addEventListener('hashchange', () => this.follow_link());
     page.canvas.addEventListener('webglcontextlost', (event) => {
@@ -214,21 +262,30 @@ export class View {
     const { canvas } = this.page;
     let down: { x: number; y: number; at: number } | null = null;
     canvas.addEventListener('pointerdown', (event) => {
-      down = event.button === 0 && event.isPrimary ? { x: event.clientX, y: event.clientY, at: performance.now() } : null;
+      down =
+        event.button === 0 && event.isPrimary ? { x: event.clientX, y: event.clientY, at: performance.now() } : null;
     });
     canvas.addEventListener('pointerup', (event) => {
-      const still = down && event.isPrimary && Math.hypot(event.clientX - down.x, event.clientY - down.y) < CLICK && performance.now() - down.at < CLICK_TIME;
+      const still =
+        down &&
+        event.isPrimary &&
+        Math.hypot(event.clientX - down.x, event.clientY - down.y) < CLICK &&
+        performance.now() - down.at < CLICK_TIME;
       down = null;
       if (!still) return;
       const box = canvas.getBoundingClientRect();
       const locked = document.pointerLockElement === canvas;
-      const at = locked ? new Vector2() : new Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
+      const at = locked
+        ? new Vector2()
+        : new Vector2(
+            ((event.clientX - box.left) / box.width) * 2 - 1,
+            1 - ((event.clientY - box.top) / box.height) * 2,
+          );
       const ray = new Raycaster();
       ray.setFromCamera(at, this.camera);
       const hit = this.model.hit(ray);
       this.choose(hit ? hit.model.building_of(hit.row) : null);
     });
-    // What a test or a reader points at has no hover: a house answers to a click alone.
   }
 
   // ---- what is chosen
@@ -270,7 +327,8 @@ export class View {
   private visit(): void {
     if (!this.chosen) return;
     this.walk.stop();
-    const found = this.model.find(this.chosen), place = this.chosen_place;
+    const found = this.model.find(this.chosen),
+      place = this.chosen_place;
     if (found) {
       const { foot, height } = this.model.place(found.model, found.rows);
       this.flight.visit(foot, height, this.page.narrow);
@@ -296,7 +354,8 @@ export class View {
     if (this.model.find(house)) {
       this.choose(house);
       this.visit();
-    } else this.page.fail('House of the link not found', `${house} is not in this build, or not among the houses shown.`);
+    } else
+      this.page.fail('House of the link not found', `${house} is not in this build, or not among the houses shown.`);
   }
 
   private keep_link(): void {
@@ -340,10 +399,13 @@ export class View {
   /** A place near by that is not under a roof and not right before a wall. */
   private open_place(near: Vector3): Vector3 {
     const ray = new Raycaster();
-    let best = near, widest = -1, tried = 0;
+    let best = near,
+      widest = -1,
+      tried = 0;
     for (let ring = 0; ring < 10 && tried < 5; ++ring) {
       for (let i = 0; i < (ring ? 8 : 1) && tried < 5; ++i) {
-        const angle = (i * Math.PI) / 4, at = new Vector3(near.x + 6 * ring * Math.cos(angle), 0, near.z + 6 * ring * Math.sin(angle));
+        const angle = (i * Math.PI) / 4,
+          at = new Vector3(near.x + 6 * ring * Math.cos(angle), 0, near.z + 6 * ring * Math.sin(angle));
         ray.set(at.clone().setY(500), new Vector3(0, -1, 0));
         if (this.model.hit(ray)) continue;
         ++tried;
@@ -357,8 +419,10 @@ export class View {
 
   /** Where one sees farthest from a place, and how far the nearest wall is. */
   private clear_view(at: Vector3): { towards: Vector3; room: number } {
-    const eye = at.clone().setY(Frame.ground_at(at.x, at.z) + 2.2), ray = new Raycaster();
-    let farthest = -1, room = Infinity;
+    const eye = at.clone().setY(Frame.ground_at(at.x, at.z) + 2.2),
+      ray = new Raycaster();
+    let farthest = -1,
+      room = Infinity;
     const towards = at.clone();
     for (let i = 0; i < 12; ++i) {
       const direction = new Vector3(Math.cos((i * Math.PI) / 6), 0, Math.sin((i * Math.PI) / 6));
@@ -396,7 +460,8 @@ export class View {
   // ---- pictures
 
   private resize(): void {
-    const width = Math.max(1, this.page.root.clientWidth), height = Math.max(1, this.page.root.clientHeight);
+    const width = Math.max(1, this.page.root.clientWidth),
+      height = Math.max(1, this.page.root.clientHeight);
     this.set_sharpness(this.sharp);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
@@ -445,7 +510,8 @@ export class View {
     const sharp = still || !this.slow;
     if (sharp !== this.sharp) this.set_sharpness(sharp);
     this.dirty = false;
-    if (this.shapes_changed && (still || !this.software)) this.surroundings.follow(this.camera, this.walk.active ? this.walk.ahead(40) : this.flight.target, true);
+    if (this.shapes_changed && (still || !this.software))
+      this.surroundings.follow(this.camera, this.walk.active ? this.walk.ahead(40) : this.flight.target, true);
     if (still || !this.software) this.shapes_changed = false;
     this.renderer.render(this.scene, this.camera);
     ++this.drawn;
@@ -483,10 +549,18 @@ export class View {
   }
 }
 
+/** index.html, not a page around the viewer. */
+function page_is_ours(): boolean {
+  return document.body.classList.contains('blockrand-page');
+}
+
 /** Whether the processor draws, as on machines without a graphics unit. Throws where nothing can draw. */
 function drawn_by_software(): boolean {
   const gl = make('canvas').getContext('webgl2');
-  if (!gl) throw new Error('this browser gives no WebGL 2. It may be switched off in its settings, or the graphics driver is blocked.');
+  if (!gl)
+    throw new Error(
+      'this browser gives no WebGL 2. It may be switched off in its settings, or the graphics driver is blocked.',
+    );
   const info = gl.getExtension('WEBGL_debug_renderer_info');
   const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
   gl.getExtension('WEBGL_lose_context')?.loseContext();

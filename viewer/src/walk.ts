@@ -5,7 +5,14 @@ import { Frame } from './frame';
 const EYE = 1.7; // m
 const PACE = 4.2; // m/s, a brisk run; with shift three times as fast
 const KEYS: Record<string, [number, number]> = {
-  KeyW: [1, 0], ArrowUp: [1, 0], KeyS: [-1, 0], ArrowDown: [-1, 0], KeyD: [0, 1], ArrowRight: [0, 1], KeyA: [0, -1], ArrowLeft: [0, -1],
+  KeyW: [1, 0],
+  ArrowUp: [1, 0],
+  KeyS: [-1, 0],
+  ArrowDown: [-1, 0],
+  KeyD: [0, 1],
+  ArrowRight: [0, 1],
+  KeyA: [0, -1],
+  ArrowLeft: [0, -1],
 };
 
 export class Walk {
@@ -18,7 +25,10 @@ export class Walk {
   private dragged: number | null = null;
   private fast = false;
 
-  constructor(private readonly camera: PerspectiveCamera, private readonly canvas: HTMLElement) {
+  constructor(
+    private readonly camera: PerspectiveCamera,
+    private readonly canvas: HTMLElement,
+  ) {
     addEventListener('keydown', this.on_key);
     addEventListener('keyup', this.on_key_up);
     addEventListener('blur', () => this.pressed.clear());
@@ -59,15 +69,19 @@ export class Walk {
 
   /** A point some metres ahead on the ground. */
   ahead(metres: number): Vector3 {
-    const at = this.camera.position, x = at.x - Math.sin(this.look.y) * metres, z = at.z - Math.cos(this.look.y) * metres;
+    const at = this.camera.position,
+      x = at.x - Math.sin(this.look.y) * metres,
+      z = at.z - Math.cos(this.look.y) * metres;
     return new Vector3(x, Frame.ground_at(x, z), z);
   }
 
   /** Walks on. True: the camera moved. */
   update(): boolean {
-    const now = performance.now(), seconds = Math.min(0.25, (now - this.before) / 1000);
+    const now = performance.now(),
+      seconds = Math.min(0.25, (now - this.before) / 1000);
     this.before = now;
-    let forward = 0, right = 0;
+    let forward = 0,
+      right = 0;
     for (const code of this.pressed) {
       forward += KEYS[code]?.[0] ?? 0;
       right += KEYS[code]?.[1] ?? 0;
@@ -75,7 +89,9 @@ export class Walk {
     const moved = forward !== 0 || right !== 0 || this.turned;
     this.turned = false;
     const step = (seconds * PACE * (this.fast ? 3 : 1)) / Math.max(1, Math.hypot(forward, right));
-    const at = this.camera.position, sin = Math.sin(this.look.y), cos = Math.cos(this.look.y);
+    const at = this.camera.position,
+      sin = Math.sin(this.look.y),
+      cos = Math.cos(this.look.y);
     at.x += (-sin * forward + cos * right) * step;
     at.z += (-cos * forward - sin * right) * step;
     at.y = Frame.ground_at(at.x, at.z) + EYE;
