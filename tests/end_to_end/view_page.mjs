@@ -9,6 +9,7 @@ import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
+import { difference, distance, hue_of, picture_reader } from './view_page_pictures.mjs';
 
 const [url, pictures, given_modules] = process.argv.slice(2);
 if (!pictures) {
@@ -94,52 +95,13 @@ async function ready(page) {
   return settled(page);
 }
 
-// PNGs are read by the browser, on an empty page of its own.
-const reader = await browser.newPage();
-async function pixels(png) {
-  return reader.evaluate(async (base64) => {
-    const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${base64}`)).blob());
-    const canvas = new OffscreenCanvas(image.width, image.height),
-      context = canvas.getContext('2d');
-    context.drawImage(image, 0, 0);
-    const { data } = context.getImageData(0, 0, image.width, image.height);
-    const colours = new Set();
-    let light = 0;
-    const hues = new Array(36).fill(0);
-    const small = [];
-    for (let i = 0; i < data.length; i += 4) {
-      const [r, g, b] = [data[i], data[i + 1], data[i + 2]];
-      colours.add(((r >> 2) << 12) | ((g >> 2) << 6) | (b >> 2));
-      light += 0.2126 * r + 0.7152 * g + 0.0722 * b;
-      const most = Math.max(r, g, b),
-        spread = most - Math.min(r, g, b);
-      if (spread > 40) {
-        const hue = most === r ? ((g - b) / spread + 6) % 6 : most === g ? (b - r) / spread + 2 : (r - g) / spread + 4;
-        hues[Math.floor(hue * 6) % 36] += 1;
-      }
-      if ((i / 4) % 7 === 0) small.push(((r + g + b) / 3) | 0);
-    }
-    const count = data.length / 4;
-    return { colours: colours.size, light: light / count, hues: hues.map((n) => n / count), small };
-  }, png.toString('base64'));
-}
-const difference = (a, b) =>
-  a.small.reduce((n, value, i) => n + (Math.abs(value - b.small[i]) > 12), 0) / a.small.length;
+const pixels = await picture_reader(browser);
 /** The picture of the houses alone, without what lies above it. */
 const VIEW = { x: 330, y: 150, width: 660, height: 640 };
 async function shot(page, name, clip = VIEW) {
   await page.screenshot({ path: join(pictures, `${name}.png`) });
   return pixels(await page.screenshot({ clip }));
 }
-const distance = (a, b) => Math.hypot(...a.map((v, i) => v - b[i]));
-const hue_of = (rgb) => {
-  const [r, g, b] = rgb.match(/\d+/g).map(Number),
-    most = Math.max(r, g, b),
-    spread = most - Math.min(r, g, b);
-  if (spread < 60) return null;
-  return (most === r ? ((g - b) / spread + 6) % 6 : most === g ? (b - r) / spread + 2 : (r - g) / spread + 4) * 6;
-};
-
 const told = await (await fetch(new URL('view.json', url))).json();
 const places = (await Promise.all(told.places.map(async (path) => (await fetch(new URL(path, url))).text())))
   .flatMap((text) => text.split('\n'))

@@ -1,5 +1,5 @@
-// Ways to colour houses, each with its categories. Colours are told apart by all kinds of colour vision: Okabe and Ito, "Color
-// Universal Design" (2008) for kinds; for numbers and times ramps from light to dark.
+// Ways to colour houses, each with its categories. Colours are told apart by all kinds of colour vision: Okabe and Ito,
+// "Color Universal Design" (2008) for kinds; for numbers and times ramps from light to dark.
 import { Color } from 'three';
 import { sources_of, Table } from './table';
 import { paint_texel } from './paint';

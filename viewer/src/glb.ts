@@ -1,5 +1,5 @@
-// Reads a GLB of a tile into typed arrays. GLTFLoader makes an object of each primitive, thousands in a tile with windows;
-// here they stay arrays, and tile_model.ts makes few meshes of them.
+// Reads a GLB of a tile into typed arrays. GLTFLoader makes an object of each primitive, thousands in a tile with
+// windows; here they stay arrays, and tile_model.ts makes few meshes of them.
 import { Matrix4, Quaternion, Vector3 } from 'three';
 
 export interface Json {

@@ -1,4 +1,5 @@
-// The build as it streams in: 3d-tiles-renderer chooses tiles and keeps their memory within bounds; near windows come and go here.
+// The build as it streams in: 3d-tiles-renderer chooses tiles and keeps their memory within bounds; near windows come
+// and go here.
 import { Camera, Group, Matrix4, Mesh, Raycaster, Sphere, Vector3, WebGLRenderer } from 'three';
 import { TilesRenderer } from '3d-tiles-renderer/three';
 import type { Files } from './files';

@@ -1,5 +1,5 @@
-// The elements of the page and small helpers to make them. Everything lies inside .blockrand-view, so that a report around it
-// keeps its own look.
+// The elements of the page and small helpers to make them. Everything lies inside .blockrand-view, so that a report
+// around it keeps its own look.
 
 type Attributes = Record<string, string | number | boolean | undefined>;
 

@@ -1,4 +1,5 @@
-// The material of all houses: three's Lambert shading with colours by feature, glass that mirrors the sky, and darker feet.
+// The material of all houses: three's Lambert shading with colours by feature, glass that mirrors the sky, and darker
+// feet.
 import { Color, DataTexture, DoubleSide, FrontSide, MeshLambertMaterial } from 'three';
 
 /** What all tiles share: changed in place, so that a change shows everywhere at once. */
@@ -69,7 +70,8 @@ if (coloured && !is_glass) {
 if (coloured && is_glass) shown = vec3(0.05, 0.06, 0.07);
 // The chosen house keeps its colour in a legend's colours and is hatched, which every eye can tell.
 if (chosen && !is_glass) {
-  if (coloured) shown = mix(shown, vec3(1.0), step(0.5, fract((gl_FragCoord.x + gl_FragCoord.y) * hatching)) * 0.85);
+  vec3 stripe = dot(shown, vec3(0.2126, 0.7152, 0.0722)) > 0.3 ? vec3(0.012) : vec3(1.0);
+  if (coloured) shown = mix(shown, stripe, step(0.5, fract((gl_FragCoord.x + gl_FragCoord.y) * hatching)) * 0.85);
   else shown = mix(shown, highlight, 0.62);
 }
 // Light from the sky reaches the foot of a wall less than its top.

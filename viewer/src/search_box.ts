@@ -97,6 +97,7 @@ export class SearchBox {
   }
 
   private choose(hit: PlaceLine): void {
+    clearTimeout(this.timer);
     this.input.value = hit.address || hit.name || hit.id;
     this.close();
     this.on_choose(hit);

@@ -1,5 +1,5 @@
-// Starts the viewer in an element: BlockrandView.start(element), which a report calls. The element of index.html asks for it by
-// an attribute: the server's Content-Security-Policy lets no script of the page itself run.
+// Starts the viewer in an element: BlockrandView.start(element), which a report calls. The element of index.html asks
+// for it by an attribute: the server's Content-Security-Policy lets no script of the page itself run.
 import { describe, View } from './view';
 import { Files, FileMissing } from './files';
 import { Page } from './page';

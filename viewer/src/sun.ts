@@ -1,6 +1,6 @@
-// Where the sun stands. Equations: NOAA Global Monitoring Laboratory, "General Solar Position Calculations" (PDF beside the NOAA
-// Solar Calculator, gml.noaa.gov/grad/solcalc), a Fourier series after Spencer, "Fourier series representation of the position of
-// the sun", Search 2 (1971). Good to about a quarter of a degree.
+// Where the sun stands. Equations: NOAA Global Monitoring Laboratory, "General Solar Position Calculations" (PDF beside
+// the NOAA Solar Calculator, gml.noaa.gov/grad/solcalc), a Fourier series after Spencer, "Fourier series representation
+// of the position of the sun", Search 2 (1971). Good to about a quarter of a degree.
 
 export interface SunPosition {
   /** Radians above the horizon, without refraction. */

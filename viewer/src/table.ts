@@ -1,4 +1,5 @@
-// The property table of a tile (EXT_structural_metadata): what is known of each building part. Values are read when asked for.
+// The property table of a tile (EXT_structural_metadata): what is known of each building part. Values are read when
+// asked for.
 import type { Glb, Json } from './glb';
 
 export type Value = string | number | boolean;

@@ -1,5 +1,5 @@
-// A tile as few meshes: its bodies in one, its windows and ornaments in cells of some metres, each coarse from afar and whole
-// from near. Every vertex knows its feature, so houses are coloured by a small texture of one texel per feature.
+// A tile as few meshes: its bodies in one, its windows and ornaments in cells of some metres, each coarse from afar and
+// whole from near. Every vertex knows its feature, so houses are coloured by a small texture of one texel per feature.
 import {
   BufferAttribute,
   BufferGeometry,

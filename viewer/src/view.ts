@@ -1,5 +1,5 @@
-// The view as a whole: what is chosen, where the camera is, and when a new picture is drawn. Pictures are drawn only when
-// something changed.
+// The view as a whole: what is chosen, where the camera is, and when a new picture is drawn. Pictures are drawn only
+// when something changed.
 import {
   NeutralToneMapping,
   PCFShadowMap,
