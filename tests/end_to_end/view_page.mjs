@@ -525,7 +525,7 @@ async function embedded() {
   check((await page.title()) === 'report', 'its title stays');
   const wheel = async () => {
     const before = await state(page);
-    await page.mouse.move(600, 400);
+    await page.mouse.move(430, 420);
     await page.mouse.wheel(0, -300);
     return distance((await settled(page)).camera, before.camera);
   };

@@ -1,4 +1,5 @@
 // The panel of the chosen house: what was explained about it, what the tile knows of it, and where to read on.
+import { MODES } from './colours';
 import type { Files } from './files';
 import { icon, make, Page } from './page';
 import { sources_of, Value } from './table';
@@ -190,6 +191,9 @@ function shown(name: string, value: Value): (Node | string)[] {
     return [swatch, value];
   }
   if (name === 'style_confidence' && typeof value === 'number') return [`${Math.round(100 * value)} %`];
+  // In the words of the legend.
+  const named = MODES.find((mode) => mode.name === name)?.categories.find(({ key }) => key === value)?.label;
+  if (named && typeof value === 'string') return [named];
   const unit = UNITS[name];
   return [`${String(value).replaceAll('_', ' ')}${unit ? (unit === '°' ? unit : ` ${unit}`) : ''}`];
 }
