@@ -47,6 +47,16 @@ struct ContextFacts {
   std::string plan_note;              ///< what the plan shows, where it is not the whole build; may be empty
 };
 
+/// A block of houses; its number is its place in ReportFacts::blocks, from 1.
+struct BlockFact {
+  std::string id;                  ///< as context::Block has it
+  std::string streets;             ///< "Arkonaplatz, Ruppiner Straße and Granseer Straße"; may be empty
+  double area = 0;                 ///< m², up to the middle of its streets
+  bool gives_ratios = false;       ///< it is whole, and built land
+  std::uint64_t buildings = 0;     ///< that belong to it, also those of other areas
+  std::vector<std::vector<std::pair<double, double>>> rings;  ///< m, build CRS
+};
+
 struct ReportFacts {
   std::string name;       ///< of the build, for people
   std::string data_time;  ///< ISO 8601, of the data; may be empty
@@ -68,6 +78,9 @@ struct ReportFacts {
   double party_wall_length = 0;                                         ///< m
   double volume = 0;                                                    ///< m³
   std::uint64_t party_walls = 0;
+
+  std::vector<BlockFact> blocks;  ///< those that a building of this build belongs to, from north to south
+  bool alone = false;             ///< one tile or area of a larger build
 
   std::span<const model::ReportRow>
       rows;  ///< of all objects, sorted; outlives this. Reported ones carry the detail of their object
