@@ -76,7 +76,7 @@ Values bar_values(const std::vector<BarPart>& parts, std::uint64_t all, std::uin
     rect.set("text", text);
     rects.push_back(std::move(rect));
   }
-  values.set("words", words).set("rects", std::move(rects));
+  values.set("words", words.empty() ? std::string("none") : words).set("rects", std::move(rects));
   return values;
 }
 

@@ -160,7 +160,9 @@ ReportTile report_tile(const model::Region& region) {
     b.ring_count = static_cast<std::uint32_t>(map.ring_ends.size()) - b.first_ring;
     b.name = names.number(tags.name(building.tags));
     const Address address = tags.address(building.tags);
-    b.address = names.number(address.empty() ? std::string() : address.line());
+    // Street and number where both are known: town and postcode are nearly always those of all others.
+    const std::string street = address.street_line();
+    b.address = names.number(!street.empty() || address.empty() ? street : address.line());
     b.use = names.number(a.use.value);
     b.block = names.number(building.situation.block);
     map.buildings.push_back(b);
