@@ -58,7 +58,7 @@
       view[1] = y - view[3] / 2;
       show();
     };
-    const frame = map.parentElement;
+    const sheet = map.parentElement, frame = sheet.parentElement;
     const buttons = element('div', { className: 'zoom' });
     for (const [label, title, act] of [['+', 'Closer', function () { zoom(1.6, 0.5, 0.5); }], ['\u2212', 'Further', function () { zoom(1 / 1.6, 0.5, 0.5); }],
                                        ['\u2922', 'Whole map', function () { view = full.slice(); show(); }]]) {
@@ -67,7 +67,7 @@
       button.addEventListener('click', act);
       buttons.append(button);
     }
-    frame.append(buttons);
+    sheet.append(buttons);
     map.addEventListener('wheel', function (event) {
       if (!event.ctrlKey) return;
       event.preventDefault();

@@ -186,7 +186,7 @@ Values map_values(const MapFootprints& footprints, const ReportMap& map, const R
   if (!map.drawn) return v.set("frame", false);
   Values f;
   constexpr std::string_view kThemes[kMapThemes] = {"Style", "Era", "Storeys", "Roofs", "Source of storeys",
-                                                    "\u2026 of height", "\u2026 of roof", "Issues"};
+                                                    "Source of heights", "Source of roofs", "Issues"};
   for (std::size_t t = 0; t < kMapThemes; ++t) {
     const auto theme = static_cast<MapTheme>(t);
     if (!styles && (theme == MapTheme::style || theme == MapTheme::era)) continue;
