@@ -4,9 +4,13 @@ import io
 import json
 import os
 import shutil
+import unittest
 
 import validators
-from blockrand_run import SAMPLE, BuildTest, Setup, call, extract, main, read_json
+from blockrand_run import SAMPLE, BuildTest, Setup, blockrand, call, extract, main, read_json
+from imagery_test import Imagery
+from osm_files import read_xml
+from region_run import Map, RegionTest
 
 
 def node(test, *arguments):
@@ -108,6 +112,43 @@ class OtherPages(BuildTest):
                 self.assertIn('buildings.csv', files)
                 pages.append(os.path.join(folder, 'report.html'))
         self.assertEqual(node(self, 'axe', *pages[:2]), [])
+
+    def test_a_comparison(self):
+        folders = [self.build(SAMPLE, f'lod{lod}', '--lod', lod, '--formats', 'citygml', '--no-report') for lod in ('1', '2')]
+        out = self.path('comparison')
+        run = blockrand('compare', folders[0], os.path.join(folders[1], 'citygml'), '-o', out)
+        self.assertIn(run.code, (0, 3), run)
+        self.assertEqual(node(self, 'axe', os.path.join(out, 'compare.html')), [])
+
+
+class OfImages(Imagery):
+    """The page on images: of the village that imagery_test.py draws."""
+
+    def test_houses_that_the_map_has_elsewhere_are_told_and_the_others_are_not(self):
+        out = self.build(self.map, 'seen', '--imagery', self.image, '--lod', '1')
+        self.assertEqual(node(self, 'axe', os.path.join(out, 'imagery.html')), [])
+
+
+class OfChanges(RegionTest):
+    def test_a_night(self):
+        folder = self.path('town')
+        self.update(folder, SAMPLE)
+        map_ = Map(read_xml(SAMPLE))
+        house = next(o for o in map_.ways('building') if 'building:levels' in o.tags)
+        map_.edit(house, tags=dict(house.tags, **{'building:levels': '7'}))
+        self.update(folder, map_.write_changes(self.path('one.osc.gz')))
+        self.assertEqual(node(self, 'axe', os.path.join(folder, 'log', '000002.changes.html'),
+                              os.path.join(folder, 'current', 'report.html')), [])
+
+
+def load_tests(loader, _tests, _pattern):
+    """Of the classes that tests here build upon, only what is told anew."""
+    suite = unittest.TestSuite()
+    for case in (Report, OtherPages):
+        suite.addTests(loader.loadTestsFromTestCase(case))
+    suite.addTest(OfImages('test_houses_that_the_map_has_elsewhere_are_told_and_the_others_are_not'))
+    suite.addTest(OfChanges('test_a_night'))
+    return suite
 
 
 if __name__ == '__main__':
