@@ -1,7 +1,7 @@
 #include "pipeline/base/template.h"
 
-#include <kainjow/mustache.hpp>
 #include <algorithm>
+#include <kainjow/mustache.hpp>
 #include <map>
 #include <stdexcept>
 

@@ -400,7 +400,8 @@ std::string changes_page(const std::string& title, const BuildChanges& c, const 
   page.set("title", title).set("page_css", base::asset("page.css"));
   page.set("before", base::with_thousands(c.before)).set("after", base::with_thousands(c.after));
   page.set("added", base::with_thousands(c.added.size())).set("removed", base::with_thousands(c.removed.size()));
-  page.set("outlines", base::with_thousands(c.outlines.size())).set("values", base::with_thousands(c.attributes.size()));
+  page.set("outlines", base::with_thousands(c.outlines.size()))
+      .set("values", base::with_thousands(c.attributes.size()));
   if (std::optional<Values> map = changes_map(c)) page.add("map", std::move(*map));
   const auto table = [&](const std::string& heading, const std::vector<std::string>& columns,
                          const std::vector<std::vector<std::string>>& rows, std::size_t all) {

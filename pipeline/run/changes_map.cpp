@@ -159,16 +159,17 @@ Values drawing(const std::vector<const Shape*>& shapes, const ValueChanges& valu
     drawn.set("state", shape->state).set("title", title).set("path", false).set("dot", false);
     if (std::max(most.x - least.x, most.y - least.y) < 2 * kDot) {
       Values dot;
-      dot.set("x", fmt::format("{:.1f}", (least.x + most.x) / 2)).set("y", fmt::format("{:.1f}", (least.y + most.y) / 2));
+      dot.set("x", fmt::format("{:.1f}", (least.x + most.x) / 2))
+          .set("y", fmt::format("{:.1f}", (least.y + most.y) / 2));
       drawn.add("dot", std::move(dot.set("radius", fmt::format("{:g}", kDot))));
     } else {
       drawn.set("path", std::move(path));
     }
     out.add("shapes", std::move(drawn));
   }
-  out.set("caption", fmt::format("{} {} around {:.5f}, {:.5f} (latitude, longitude)", shapes.size(),
-                                 shapes.size() == 1 ? "building" : "buildings", (low.y + high.y) / 2,
-                                 (low.x + high.x) / 2));
+  out.set("caption",
+          fmt::format("{} {} around {:.5f}, {:.5f} (latitude, longitude)", shapes.size(),
+                      shapes.size() == 1 ? "building" : "buildings", (low.y + high.y) / 2, (low.x + high.x) / 2));
   return out;
 }
 
@@ -190,8 +191,7 @@ std::optional<Values> changes_map(const BuildChanges& c) {
     out.add("places", drawing(places[i], values));
     drawn += places[i].size();
   }
-  out.set("elsewhere",
-          c.footprints.size() > drawn ? base::with_thousands(c.footprints.size() - drawn) : std::string());
+  out.set("elsewhere", c.footprints.size() > drawn ? base::with_thousands(c.footprints.size() - drawn) : std::string());
   return out;
 }
 

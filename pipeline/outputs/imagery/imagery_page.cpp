@@ -121,8 +121,8 @@ Values gone_chapter(const OverlayInputs& in) {
     if (in.seen.outlines[b].gone > 0) gone.push_back(b);
   std::ranges::stable_sort(
       gone, [&](std::uint32_t a, std::uint32_t b) { return in.seen.outlines[a].gone > in.seen.outlines[b].gone; });
-  Values values = chapter("Perhaps gone: " + base::with_thousands(gone.size()),
-                          "Mapped, and built; the image shows no house.");
+  Values values =
+      chapter("Perhaps gone: " + base::with_thousands(gone.size()), "Mapped, and built; the image shows no house.");
   gone.resize(std::min(gone.size(), kPicturedCorrections));
   for (const std::uint32_t b : gone) values.add("figures", figure(in, b));
   return values;

@@ -91,7 +91,8 @@ Values block_values(const std::vector<Sums>& by_block, const Sums& without, cons
     v.add("rows", std::move(row));
   }
   if (without.buildings > 0)
-    v.add("without", row_values(without).set("why", "at the edge of the data, on land that no streets close, or on too much of it"));
+    v.add("without", row_values(without).set(
+                         "why", "at the edge of the data, on land that no streets close, or on too much of it"));
   else
     v.set("without", false);
   v.set("more", all > order.size()).set("listed", with_thousands(order.size())).set("all", with_thousands(all));

@@ -84,7 +84,8 @@ std::string square_metres(Area area) { return base::with_thousands(static_cast<s
 /// "4", "2.5": halves are tagged now and then.
 std::string storeys_text(float storeys) {
   const auto tenths = static_cast<std::int64_t>(static_cast<double>(storeys) * 10 + 0.5);
-  return tenths % 10 == 0 ? std::to_string(tenths / 10) : std::to_string(tenths / 10) + "." + std::to_string(tenths % 10);
+  return tenths % 10 == 0 ? std::to_string(tenths / 10)
+                          : std::to_string(tenths / 10) + "." + std::to_string(tenths % 10);
 }
 
 std::string spaced(std::string_view name) {

@@ -19,7 +19,7 @@ std::string use_label(std::string_view use);
 
 struct HouseLimits {
   std::size_t searched = 20'000;  ///< houses that the page knows; of larger builds those that have an address or a name
-  std::size_t rows = 25;          ///< of the table before the page's script runs, which adds the others as they are asked for
+  std::size_t rows = 25;  ///< of the table before the page's script runs, which adds the others as they are asked for
 };
 
 /// \param block_number  parallel to footprints.names: the number of the block of that id, 0 for none

@@ -62,8 +62,8 @@ Values edge_values(const ContextFacts& c) {
     row.set("colour", model::text(model::colour_of(kind))).set("name", spaced(model::name(kind)));
     row.set("meaning", model::meaning(kind)).set("count", with_thousands(c.edges[k]));
     row.set("length", rounded(c.edge_length[k]));
-    row.set("share", percent(static_cast<std::uint64_t>(c.edge_length[k] + 0.5),
-                             static_cast<std::uint64_t>(length + 0.5)));
+    row.set("share",
+            percent(static_cast<std::uint64_t>(c.edge_length[k] + 0.5), static_cast<std::uint64_t>(length + 0.5)));
     v.add("rows", std::move(row));
   }
   return v;

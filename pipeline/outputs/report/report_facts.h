@@ -49,11 +49,11 @@ struct ContextFacts {
 
 /// A block of houses; its number is its place in ReportFacts::blocks, from 1.
 struct BlockFact {
-  std::string id;                  ///< as context::Block has it
-  std::string streets;             ///< "Arkonaplatz, Ruppiner Straße and Granseer Straße"; may be empty
-  double area = 0;                 ///< m², up to the middle of its streets
-  bool gives_ratios = false;       ///< it is whole, and built land
-  std::uint64_t buildings = 0;     ///< that belong to it, also those of other areas
+  std::string id;               ///< as context::Block has it
+  std::string streets;          ///< "Arkonaplatz, Ruppiner Straße and Granseer Straße"; may be empty
+  double area = 0;              ///< m², up to the middle of its streets
+  bool gives_ratios = false;    ///< it is whole, and built land
+  std::uint64_t buildings = 0;  ///< that belong to it, also those of other areas
   std::vector<std::vector<std::pair<double, double>>> rings;  ///< m, build CRS
 };
 

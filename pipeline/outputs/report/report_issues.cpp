@@ -109,8 +109,7 @@ Values issue_values(const MapFootprints& footprints, const Issues& issues, const
       code.set("meaning", info(list.code).meaning).set("listed", limit(list.count, options.listed_objects));
       Values::List rows;
       for (const ListedRow& row : list.rows) {
-        const bool marked =
-            row.building != model::kNoIndex && std::ranges::binary_search(map.marks, row.building);
+        const bool marked = row.building != model::kNoIndex && std::ranges::binary_search(map.marks, row.building);
         rows.emplace_back();
         rows.back().set("link", osm_link(row.object)).set("id", row.object.text()).set("detail", without_id(row));
         rows.back().set("map", marked ? footprints.buildings[row.building].osm.text() : std::string());
@@ -185,8 +184,8 @@ Values map_values(const MapFootprints& footprints, const ReportMap& map, const R
   Values v;
   if (!map.drawn) return v.set("frame", false);
   Values f;
-  constexpr std::string_view kThemes[kMapThemes] = {"Style", "Era", "Storeys", "Roofs", "Source of storeys",
-                                                    "Source of heights", "Source of roofs", "Issues"};
+  constexpr std::string_view kThemes[kMapThemes] = {
+      "Style", "Era", "Storeys", "Roofs", "Source of storeys", "Source of heights", "Source of roofs", "Issues"};
   for (std::size_t t = 0; t < kMapThemes; ++t) {
     const auto theme = static_cast<MapTheme>(t);
     if (!styles && (theme == MapTheme::style || theme == MapTheme::era)) continue;
@@ -196,17 +195,17 @@ Values map_values(const MapFootprints& footprints, const ReportMap& map, const R
     entry.set("classes", Values::List());
     for (std::size_t k = 0; k < map.counts[t].size(); ++k)
       if (const std::uint64_t n = map.counts[t][k]; n > 0)
-        entry.add("classes", Values()
-                                 .set("class", std::to_string(k))
-                                 .set("text", class_name(theme, k))
-                                 .set("count", with_thousands(n)));
+        entry.add(
+            "classes",
+            Values().set("class", std::to_string(k)).set("text", class_name(theme, k)).set("count", with_thousands(n)));
     f.add("themes", std::move(entry));
   }
   f.set("ratio", map.ratio).set("width", std::to_string(map.width)).set("height", std::to_string(map.height));
   f.set("metres", std::to_string(map.metres)).set("far", map.far).set("paths", map.paths);
   f.set("bar", map.bar_share).set("bar_length", map.bar_length);
   f.set("blocks", Values::List()).set("marks", Values::List());
-  for (const auto& [number, d] : map.blocks) f.add("blocks", Values().set("number", std::to_string(number)).set("d", d));
+  for (const auto& [number, d] : map.blocks)
+    f.add("blocks", Values().set("number", std::to_string(number)).set("d", d));
   Values::List marks;
   for (const std::uint32_t b : map.marks) {
     marks.emplace_back();

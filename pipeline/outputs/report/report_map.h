@@ -51,7 +51,8 @@ struct ReportMap {
   bool far = false;                    ///< houses are less than a pixel
   std::string ratio;                   ///< width by height, for CSS
   std::string bar_share, bar_length;   ///< of the scale bar: percent of the width; "200 m"
-  std::vector<std::optional<MapPoint>> places;  ///< units, y down, parallel to the footprints; nothing outside of the map
+  std::vector<std::optional<MapPoint>>
+      places;  ///< units, y down, parallel to the footprints; nothing outside of the map
   std::vector<std::pair<std::uint32_t, std::string>> blocks;  ///< number and path data of outlines
   std::array<std::vector<std::uint64_t>, kMapThemes> counts;  ///< buildings by theme and class
   std::vector<std::uint32_t> marks;  ///< of `marked` those that lie in the frame, in the same order

@@ -222,8 +222,9 @@ OutputFormat report_output() {
                       [](const OutputOptions&, std::uint64_t models) { return models > 0; }}},
           .manual = {{"report.html",
                       "what was built, where values come from, what fell back and why, with a map and pictures"},
-                     {kTable, "every building in a line: address, use, storeys, height, roof, style, era, floor area, "
-                              "block, and where values come from; opens in any spreadsheet"},
+                     {kTable,
+                      "every building in a line: address, use, storeys, height, roof, style, era, floor area, "
+                      "block, and where values come from; opens in any spreadsheet"},
                      {"plan.png",
                       "the neighbourhood from above: blocks, courtyards, walls in the colours of what they face"}},
           .asked = [](const OutputOptions& o) { return o.report; },

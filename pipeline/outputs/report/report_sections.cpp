@@ -26,20 +26,21 @@ std::string label(std::string_view name) {
   return out;
 }
 
-constexpr std::string_view kSourceMeaning[model::kSourceCount] = {"given by the user: a correction, or an option for all",
-                                                                  "a tag of the object",
-                                                                  "follows from another tag",
-                                                                  "taken from the building\u2019s parts",
-                                                                  "seen in an aerial image",
-                                                                  "measured in an elevation model",
-                                                                  "read from the footprint\u2019s shape",
-                                                                  "like tagged neighbours",
-                                                                  "like the rest of its block",
-                                                                  "like its surroundings",
-                                                                  "usual in its district",
-                                                                  "usual in the region",
-                                                                  "usual for this kind of building",
-                                                                  "nothing known: a general value"};
+constexpr std::string_view kSourceMeaning[model::kSourceCount] = {
+    "given by the user: a correction, or an option for all",
+    "a tag of the object",
+    "follows from another tag",
+    "taken from the building\u2019s parts",
+    "seen in an aerial image",
+    "measured in an elevation model",
+    "read from the footprint\u2019s shape",
+    "like tagged neighbours",
+    "like the rest of its block",
+    "like its surroundings",
+    "usual in its district",
+    "usual in the region",
+    "usual for this kind of building",
+    "nothing known: a general value"};
 
 /// The number of a source as CSS class, or 0 for a name that no list knows.
 int source_number(std::string_view name) {
@@ -142,8 +143,7 @@ Values source_values(const ReportFacts& f) {
       if (counts[k] == 0) continue;
       present[k] = true;
       const auto source = static_cast<model::Source>(k - 1);
-      parts.push_back(
-          {"b" + std::to_string(k), k == 0 ? "other" : std::string(model::name(source)), counts[k]});
+      parts.push_back({"b" + std::to_string(k), k == 0 ? "other" : std::string(model::name(source)), counts[k]});
     }
     // What a user gave, by a correction or an option, is stated, but not by the map.
     const std::uint64_t given = counts[1 + static_cast<std::size_t>(model::Source::override_)];
@@ -173,7 +173,8 @@ Values source_values(const ReportFacts& f) {
   for (std::size_t k = 1; k < present.size(); ++k) {
     if (!present[k]) continue;
     const std::string_view name = model::name(static_cast<model::Source>(k - 1));
-    v.add("key", Values().set("swatch", "b" + std::to_string(k)).set("name", name).set("meaning", kSourceMeaning[k - 1]));
+    v.add("key",
+          Values().set("swatch", "b" + std::to_string(k)).set("name", name).set("meaning", kSourceMeaning[k - 1]));
     v.add("columns", Values().set("name", name));
   }
   for (const auto& [attribute, by_source] : f.sources) {
@@ -233,8 +234,7 @@ Values file_values(const ReportFacts& f) {
     std::uint64_t files = 0, bytes = 0;
   };
   Kind kinds[] = {
-      {"tileset.json", "3D Tiles 1.1", "CesiumJS, QGIS 3.34 or newer, Unreal, Unity: open tileset.json",
-       false, 0, 0},
+      {"tileset.json", "3D Tiles 1.1", "CesiumJS, QGIS 3.34 or newer, Unreal, Unity: open tileset.json", false, 0, 0},
       {"tiles/", "\u2026 its tiles", "single GLB files, for Blender and other editors", true, 0, 0},
       {"model.glb", "glTF, whole build", "Blender and other editors, 3D viewers", false, 0, 0},
       {"citygml/", "CityGML 2.0", "FME, 3DCityDB, KIT ModelViewer, azul; one file per tile", true, 0, 0},

@@ -69,11 +69,10 @@ void measure(const model::Building& building, MapBuilding& b) {
     const double area = geometry::area(part.plan);
     const bool on_ground = a.min_height.value <= 0;
     if (on_ground) standing += area;
-    const double skipped =
-        on_ground ? 0.0
-        : part.mapped.min_storey
-            ? static_cast<double>(*part.mapped.min_storey)
-            : std::max(0.0, a.min_height.value - a.plinth_height.value) / std::max(a.storey_height.value, 1.0);
+    const double skipped = on_ground                ? 0.0
+                           : part.mapped.min_storey ? static_cast<double>(*part.mapped.min_storey)
+                                                    : std::max(0.0, a.min_height.value - a.plinth_height.value) /
+                                                          std::max(a.storey_height.value, 1.0);
     const Area floors = in_hundredths(area * std::max(0.0, a.storeys.value - skipped));
     b.floors += floors;
     b.roof_floors += in_hundredths(area * std::max(0.0, a.roof_storeys.value));
@@ -81,7 +80,8 @@ void measure(const model::Building& building, MapBuilding& b) {
   }
   double outline = 0;
   for (const model::Polygon& p : building.outline) outline += geometry::area(p);
-  const bool all_canopies = !building.parts.empty() && std::ranges::all_of(building.parts, &model::BuildingPart::canopy);
+  const bool all_canopies =
+      !building.parts.empty() && std::ranges::all_of(building.parts, &model::BuildingPart::canopy);
   // Parts may leave some of the outline to nothing, and stick out of it: the outline is what covers the ground.
   b.footprint = in_hundredths(all_canopies ? 0.0 : outline > 0 ? outline : standing);
 }

@@ -32,9 +32,9 @@ struct MapBuilding {
   float storeys = 0, height = 0;                 ///< height in metres
   model::Source storeys_source = model::Source::default_, height_source = model::Source::default_,
                 roof_source = model::Source::default_;
-  model::RoofShape roof = model::RoofShape::flat;  ///< of its largest body, as built
-  bool built = false;                              ///< it has a body
-  std::int8_t lod = -1;                            ///< best level of detail among its bodies
+  model::RoofShape roof = model::RoofShape::flat;             ///< of its largest body, as built
+  bool built = false;                                         ///< it has a body
+  std::int8_t lod = -1;                                       ///< best level of detail among its bodies
   std::uint8_t style = kNotClassified, era = kNotClassified;  ///< model::StyleClass, model::Era
   model::Source style_source = model::Source::default_, era_source = model::Source::default_;
   /// m² of the outline, of what stands on the ground; of all full storeys; of those in the roof, measured at the eaves.
@@ -52,7 +52,7 @@ struct MapFootprints {
   std::vector<MapBuilding> buildings;
   std::vector<std::uint32_t> ring_ends;
   std::vector<MapPoint> corners;
-  std::vector<std::string> names;  ///< each once in a tile
+  std::vector<std::string> names;                             ///< each once in a tile
   std::vector<std::pair<model::OsmId, std::uint32_t>> parts;  ///< bodies with an id of their own → building
   std::uint64_t bodies = 0;
 
