@@ -8,7 +8,6 @@
 
 #include "pipeline/base/markup.h"
 #include "pipeline/base/text.h"
-#include "pipeline/base/version.h"
 #include "pipeline/compare/report_charts.h"
 #include "pipeline/compare/report_numbers.h"
 #include "pipeline/compare/report_places.h"
@@ -62,9 +61,9 @@ void append_files(std::string& out, const City& city, std::string_view side) {
   out += "</dd></dl>\n";
   if (city.files.empty()) return;
   constexpr std::size_t kListed = 40;
-  out +=
-      "<div class=\"wide\"><table><thead><tr><th>file</th><th>format</th><th>CRS</th><th class=\"n\">size</th>"
-      "<th class=\"n\">buildings</th><th class=\"n\">breaches</th><th></th></tr></thead><tbody>\n";
+  out += fmt::format("<div class=\"wide\" role=\"region\" aria-label=\"Files: {}\" tabindex=\"0\">", side) +
+         "<table><thead><tr><th>file</th><th>format</th><th>CRS</th><th class=\"n\">size</th>"
+         "<th class=\"n\">buildings</th><th class=\"n\">breaches</th><th></th></tr></thead><tbody>\n";
   for (std::size_t i = 0; i < std::min(kListed, city.files.size()); ++i) {
     const CityFile& f = city.files[i];
     out += "<tr>" + cell(escaped(last_part(f.path)), "") + cell(escaped(f.format), "") + cell(escaped(f.crs), "") +
@@ -190,7 +189,8 @@ std::string measure_section(const Comparison& c) {
       "<p>“Value” is pooled over all matches without what is left out of the reference; “with all” is the same with "
       "it; “left out” is the share of the reference’s surface (or facades) that makes the difference. Bias, MAE, RMSE, "
       "median and 95\u00a0% are of matches, each alike, of what is counted.</p>\n"
-      "<div class=\"wide\"><table class=\"measures\"><thead><tr><th>measure</th><th>unit</th><th class=\"n\">value</th>"
+      "<div class=\"wide\" role=\"region\" aria-label=\"All measures\" tabindex=\"0\"><table "
+      "class=\"measures\"><thead><tr><th>measure</th><th>unit</th><th class=\"n\">value</th>"
       "<th class=\"n\">with all</th><th class=\"n\">left out</th><th class=\"n\">mean, bias</th><th "
       "class=\"n\">MAE</th>"
       "<th class=\"n\">RMSE</th><th class=\"n\">median</th><th class=\"n\">95\u00a0%</th><th "
@@ -252,7 +252,8 @@ std::string surface_section(const Comparison& c) {
   std::string out = "<section id=\"surfaces\"><h2>Surfaces</h2>\n<h3>Classes</h3>\n";
   const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 0; };
   out +=
-      "<div class=\"wide\"><table class=\"classes\"><thead><tr><th>class</th><th class=\"n\">reference, m²</th><th "
+      "<div class=\"wide\" role=\"region\" aria-label=\"Surfaces by class\" tabindex=\"0\"><table "
+      "class=\"classes\"><thead><tr><th>class</th><th class=\"n\">reference, m²</th><th "
       "class=\"n\">share</th><th></th>"
       "<th class=\"n\">model, m²</th><th class=\"n\">share</th><th></th></tr></thead><tbody>\n";
   const auto row = [&](std::string_view name, double r, double m) {
@@ -337,25 +338,6 @@ std::string unmatched_section(const Comparison& c) {
   list(c.reference, c.missing, "Missing from the model");
   list(c.model, c.extra, "Only in the model");
   return out + "</section>\n";
-}
-
-std::string foot_section(const Comparison& comparison, const OptionList& options) {
-  std::string out = "<footer>";
-  for (const auto& [what, city] :
-       {std::pair("Model", &comparison.model), std::pair("Reference", &comparison.reference)})
-    out += fmt::format("{}: {}.<br/>", what,
-                       city->attribution.empty() ? "whose data it is and under which licence, its own source says"
-                                                 : escaped(city->attribution));
-  if (!options.empty()) {
-    out += "Asked for: ";
-    for (std::size_t i = 0; i < options.size(); ++i)
-      out +=
-          fmt::format("{}<code>{} {}</code>", i == 0 ? "" : " ", escaped(options[i].first), escaped(options[i].second));
-    out += ".<br/>";
-  }
-  return out + "Made by Blockrand " + escaped(base::kVersion) +
-         "; the same numbers stand in compare.json, compare.csv and compare.gpkg. This page loads nothing from "
-         "elsewhere.</footer>\n";
 }
 
 }  // namespace blockrand::compare

@@ -32,8 +32,6 @@ std::string match_section(const Comparison& comparison, std::size_t match, bool 
 /// What the colours of pictures, plans and elevations mean.
 std::string picture_legend(const ReportOptions& options);
 
-std::string foot_section(const Comparison& comparison, const OptionList& options);
-
 /// "m17": where a match stands in the page.
 std::string anchor_of(std::size_t match);
 

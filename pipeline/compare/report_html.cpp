@@ -3,8 +3,8 @@
 #include <numeric>
 
 #include "pipeline/base/assets.h"
-#include "pipeline/base/markup.h"
 #include "pipeline/base/parallel.h"
+#include "pipeline/base/template.h"
 #include "pipeline/base/version.h"
 #include "pipeline/compare/assets.h"
 #include "pipeline/compare/comparison_report.h"
@@ -30,18 +30,7 @@ std::vector<std::size_t> by_distance(const Comparison& comparison) {
 std::string comparison_html(const Comparison& comparison, const OptionList& options, const DistanceQuery& distances,
                             const ReportOptions& report, int jobs) {
   const std::vector<std::size_t> order = by_distance(comparison);
-  std::string out =
-      "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<meta name=\"generator\" "
-      "content=\"Blockrand " +
-      base::escaped(base::kVersion) + "\"/>\n<link rel=\"icon\" href=\"data:,\"/>\n<title>" +
-      base::escaped(comparison.model.name) + " against " + base::escaped(comparison.reference.name) +
-      "</title>\n<style>";
-  out += base::asset("page.css");
-  out += asset("report.css");
-  out += "</style>\n</head>\n<body>\n";
-  out += head_section(comparison);
-  out += "<main>\n";
+  std::string out;
   out += measure_section(comparison);
   out += distribution_section(comparison);
   out += roof_section(comparison);
@@ -62,10 +51,26 @@ std::string comparison_html(const Comparison& comparison, const OptionList& opti
           sections[i] = {};
         });
   }
-  out += "</main>\n" + foot_section(comparison, options) + "<script>";
-  out += asset("report.js");
-  out += "</script>\n</body>\n</html>\n";
-  return out;
+  base::Values page;
+  page.set("version", base::kVersion).set("model", comparison.model.name).set("reference", comparison.reference.name);
+  page.set("page_css", base::asset("page.css")).set("report_css", asset("report.css"));
+  page.set("report_js", asset("report.js"));
+  page.set("head", head_section(comparison)).set("sections", std::move(out));
+  for (const auto& [what, city] :
+       {std::pair("Model", &comparison.model), std::pair("Reference", &comparison.reference)})
+    page.add("data",
+             base::Values()
+                 .set("what", what)
+                 .set("whose", city->attribution.empty()
+                                   ? std::string("whose data it is and under which licence, its own source says")
+                                   : city->attribution));
+  base::Values asked;
+  for (const auto& [name, value] : options) asked.add("options", base::Values().set("name", name).set("value", value));
+  if (options.empty())
+    page.set("asked", false);
+  else
+    page.add("asked", std::move(asked));
+  return base::filled(asset, "comparison.html", std::move(page));
 }
 
 }  // namespace blockrand::compare

@@ -106,7 +106,10 @@ std::string match_tables(const Comparison& c, std::span<const std::size_t> order
     if (finite(value_of(c.matches[i].values, Measure::distance_rms).counted)) measured.push_back(i);
   const auto table = [&](std::span<const std::size_t> rows, std::string_view title) {
     if (rows.empty()) return;
-    out += fmt::format("<h3>{}</h3>\n<div class=\"wide\"><table class=\"matches\">{}<tbody>\n", title, table_head());
+    out += fmt::format(
+        "<h3>{0}</h3>\n<div class=\"wide\" role=\"region\" aria-label=\"{0}\" tabindex=\"0\"><table "
+        "class=\"matches\">{1}<tbody>\n",
+        title, table_head());
     for (const std::size_t i : rows) out += table_row(c, i);
     out += "</tbody></table></div>\n";
   };
@@ -116,8 +119,10 @@ std::string match_tables(const Comparison& c, std::span<const std::size_t> order
     std::vector<std::size_t> best(measured.rbegin(), measured.rbegin() + kListed);
     table(best, "The ten with the smallest distance");
   }
-  out += fmt::format("<h3>All {}</h3>\n<div class=\"wide\"><table class=\"matches\" id=\"all\">{}<tbody>\n",
-                     order.size(), table_head());
+  out += fmt::format(
+      "<h3>All {}</h3>\n<div class=\"wide\" role=\"region\" aria-label=\"All matches\" tabindex=\"0\"><table "
+      "class=\"matches\" id=\"all\">{}<tbody>\n",
+      order.size(), table_head());
   for (const std::size_t i : order) out += table_row(c, i);
   return out + "</tbody></table></div>\n</section>\n";
 }
@@ -160,12 +165,13 @@ std::string match_section(const Comparison& c, std::size_t index, bool pictures,
   const MatchResult& match = c.matches[index];
   std::string out = fmt::format("<section class=\"match{}\" id=\"{}\"><h3>{}</h3>\n", pictures ? "" : " plain",
                                 anchor_of(index), name_of_match(match));
-  out +=
-      "<div class=\"wide\"><table class=\"facts-of\"><thead><tr><th></th><th>buildings</th><th class=\"n\">LoD</th><th "
-      "class=\"n\">footprint</th>"
-      "<th class=\"n\">eaves</th><th class=\"n\">ridge</th><th class=\"n\">volume</th><th>roof</th><th "
-      "class=\"n\">openings</th>"
-      "<th class=\"n\">valid</th></tr></thead><tbody>\n";
+  out += fmt::format("<div class=\"wide\" role=\"region\" aria-label=\"The buildings of match {}\" tabindex=\"0\">",
+                     index + 1) +
+         "<table class=\"facts-of\"><thead><tr><th></th><th>buildings</th><th class=\"n\">LoD</th><th "
+         "class=\"n\">footprint</th>"
+         "<th class=\"n\">eaves</th><th class=\"n\">ridge</th><th class=\"n\">volume</th><th>roof</th><th "
+         "class=\"n\">openings</th>"
+         "<th class=\"n\">valid</th></tr></thead><tbody>\n";
   out += side_facts(c.reference, match.reference, "r", "reference") + side_facts(c.model, match.model, "m", "model");
   out += "</tbody></table></div>\n<div class=\"row\">";
   const std::string plan = plan_drawing(c, match, kPlanWidth, kPlanHeight);

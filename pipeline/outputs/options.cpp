@@ -168,7 +168,7 @@ base::OptionTable<O> what_files_hold() {
             .key = "report",
             .help = "write report.html: what was built, where values come from, a map and pictures",
             .without = "no report.html, the page with what was built, where values come from, a map and pictures; no "
-                       "plan.png",
+                       "plan.png, no buildings.csv",
             .record = OptionRecord::yes,
             .record_place = 3},
            &O::report),

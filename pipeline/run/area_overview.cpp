@@ -14,14 +14,15 @@
 
 #include "pipeline/base/assets.h"
 #include "pipeline/base/error.h"
-#include "pipeline/base/markup.h"
 #include "pipeline/base/sha256.h"
+#include "pipeline/base/template.h"
 #include "pipeline/base/text.h"
 #include "pipeline/base/version.h"
 #include "pipeline/georef/tiles.h"
 #include "pipeline/model/issue_codes.h"
 #include "pipeline/outputs/output.h"
 #include "pipeline/outputs/tileset/nested_tileset.h"
+#include "pipeline/run/assets.h"
 #include "pipeline/run/configuration.h"
 #include "pipeline/run/documents.h"
 #include "pipeline/run/tile_choice.h"
@@ -31,6 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+using base::Values;
 using model::TileId;
 
 /// Adds numbers to numbers of the same name, at any depth. What is no sum is left out by the caller.
@@ -139,8 +141,8 @@ struct Overview::State {
     return j.dump(1) + "\n";
   }
 
-  std::string map_svg() const {
-    if (entries.empty()) return {};
+  void add_map(Values& page) const {
+    if (entries.empty()) return;
     double west = 1e9, south = 1e9, east = -1e9, north = -1e9;
     std::uint64_t most = 1;
     for (const Entry& e : entries) {
@@ -153,23 +155,21 @@ struct Overview::State {
     // Pixels for one area; a tile of the quadtree is as high as it is wide in degrees.
     const double size = std::clamp(900.0 / ((east - west) / first.width()), 8.0, 90.0);
     const double scale = size / first.width(), squash = 1.6;  // degrees of longitude are shorter than those of latitude
-    std::string out = fmt::format(
-        "<figure>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\" width=\"{:.0f}\" "
-        "role=\"img\" "
-        "aria-label=\"Map of the areas: darker ones have more buildings\">\n",
-        (east - west) * scale, (north - south) * scale * squash, (east - west) * scale);
+    Values map;
+    map.set("width", fmt::format("{:.0f}", (east - west) * scale));
+    map.set("height", fmt::format("{:.0f}", (north - south) * scale * squash));
     for (const Entry& e : entries) {
       const georef::GeoBox b = georef::bounds(e.tile);
       const double share = static_cast<double>(e.models) / static_cast<double>(most);
-      out += fmt::format(
-          "<a href=\"{}\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"#2e6fb7\" "
-          "fill-opacity=\"{:.2f}\" stroke=\"#888888\"><title>{}: {} models</title></rect></a>\n",
-          link_of(e), (b.west - west) * scale, (north - b.north) * scale * squash, size, size * squash,
-          0.08 + 0.9 * std::sqrt(share), text_of(e.tile), base::with_thousands(e.models));
+      Values cell;
+      cell.set("link", link_of(e)).set("name", text_of(e.tile)).set("models", base::with_thousands(e.models));
+      cell.set("x", fmt::format("{:.1f}", (b.west - west) * scale));
+      cell.set("y", fmt::format("{:.1f}", (north - b.north) * scale * squash));
+      cell.set("cell_width", fmt::format("{:.1f}", size)).set("cell_height", fmt::format("{:.1f}", size * squash));
+      cell.set("opacity", fmt::format("{:.2f}", 0.08 + 0.9 * std::sqrt(share)));
+      map.add("cells", std::move(cell));
     }
-    return out +
-           "</svg>\n<figcaption>The areas; darker ones have more models. Each leads to its report. North is "
-           "up.</figcaption>\n</figure>\n";
+    page.add("map", std::move(map));
   }
 
   std::string link_of(const Entry& e) const {
@@ -177,47 +177,41 @@ struct Overview::State {
   }
 
   std::string page(const std::string& name, const std::vector<std::string>& unmatched) const {
-    using base::escaped;
-    std::string out =
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" "
-        "content=\"width=device-width, initial-scale=1\"/>\n<title>" +
-        escaped(name) + "</title>\n<style>" + std::string(base::asset("page.css")) +
-        "</style>\n</head>\n<body>\n<main>\n<h1>" + escaped(name) + "</h1>\n";
+    Values page;
     const auto count = [&](const char* key) { return base::with_thousands(counts.value(key, std::uint64_t{0})); };
-    out += fmt::format("<p>{} buildings and {} parts in {} areas; {} models, {} objects reported. Data as of {}.</p>\n",
-                       count("buildings_in"), count("parts_in"), base::with_thousands(entries.size()), count("models"),
-                       count("reported"), data.data_time.empty() ? "an unknown time" : escaped(data.data_time));
-    out += "<h2>Areas</h2>\n" + map_svg();
-    out +=
-        "<table>\n<thead><tr><th scope=\"col\">area</th><th scope=\"col\">models</th><th scope=\"col\">simpler than "
-        "asked</th><th scope=\"col\">not modelled</th><th scope=\"col\">bytes</th></tr></thead>\n<tbody>\n";
-    for (const Entry& e : entries)
-      out += fmt::format("<tr><td><a href=\"{}\">{}</a></td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-                         link_of(e), text_of(e.tile), base::with_thousands(e.models), base::with_thousands(e.simpler),
-                         base::with_thousands(e.reported), base::with_byte_unit(e.bytes));
-    out += "</tbody>\n</table>\n";
+    page.set("title", name).set("version", base::kVersion).set("page_css", base::asset("page.css"));
+    page.set("buildings", count("buildings_in")).set("parts", count("parts_in"));
+    page.set("areas", base::with_thousands(entries.size())).set("models", count("models"));
+    page.set("reported", count("reported")).set("data_time", data.data_time);
+    page.set("attribution", outputs::kAttribution);
+    add_map(page);
+    page.set("rows", Values::List());
+    for (const Entry& e : entries) {
+      Values row;
+      row.set("link", link_of(e)).set("name", text_of(e.tile)).set("models", base::with_thousands(e.models));
+      row.set("simpler", base::with_thousands(e.simpler)).set("reported", base::with_thousands(e.reported));
+      row.set("bytes", base::with_byte_unit(e.bytes));
+      page.add("rows", std::move(row));
+    }
     if (!issues.empty()) {
-      out +=
-          "<h2>What fell back or is missing, and why</h2>\n<table>\n<thead><tr><th scope=\"col\">code</th><th "
-          "scope=\"col\">objects</th><th scope=\"col\">meaning</th></tr></thead>\n<tbody>\n";
       std::vector<std::pair<std::string, std::uint64_t>> rows;
       for (const auto& [code, n] : issues.items()) rows.emplace_back(code, n.get<std::uint64_t>());
       std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+      Values list;
       for (const auto& [code, n] : rows) {
         std::string_view meaning;
         for (const model::IssueInfo& info : model::kIssueInfo)
           if (info.text == code) meaning = info.meaning;
-        out += "<tr><td>" + escaped(code) + "</td><td>" + base::with_thousands(n) + "</td><td>" + escaped(meaning) +
-               "</td></tr>\n";
+        list.add("codes", Values().set("code", code).set("count", base::with_thousands(n)).set("meaning", meaning));
       }
-      out += "</tbody>\n</table>\n";
+      page.add("issues", std::move(list));
     }
     if (!unmatched.empty()) {
-      out += "<h2>Orders that match nothing</h2>\n<ul>\n";
-      for (const std::string& order : unmatched) out += "<li>" + escaped(order) + "</li>\n";
-      out += "</ul>\n";
+      Values list;
+      for (const std::string& order : unmatched) list.add("orders", Values().set("order", order));
+      page.add("unmatched", std::move(list));
     }
-    return out + "<p>" + outputs::kAttribution + "</p>\n</main>\n</body>\n</html>\n";
+    return base::filled(asset, "overview.html", std::move(page));
   }
 };
 

@@ -15,15 +15,18 @@
 #include "pipeline/base/assets.h"
 #include "pipeline/base/attribution.h"
 #include "pipeline/base/error.h"
-#include "pipeline/base/markup.h"
 #include "pipeline/base/sha256.h"
+#include "pipeline/base/template.h"
 #include "pipeline/base/text.h"
 #include "pipeline/outputs/area_folders.h"
 #include "pipeline/outputs/gzip.h"
+#include "pipeline/run/assets.h"
 #include "pipeline/run/changes_map.h"
 
 namespace blockrand::run {
 namespace {
+
+using base::Values;
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
@@ -395,37 +398,35 @@ std::string changes_json(const BuildChanges& c, const std::vector<Gate>& gates) 
 }
 
 std::string changes_page(const std::string& title, const BuildChanges& c, const std::vector<Gate>& gates) {
-  using base::escaped;
-  std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<title>" + escaped(title) +
-                    "</title>\n<style>" + std::string(base::asset("page.css")) +
-                    "</style>\n</head>\n<body>\n<main>\n<h1>" + escaped(title) + "</h1>\n";
-  out += fmt::format(
-      "<p>{} buildings before, {} now: {} new, {} gone; {} footprints and {} values of others differ.</p>\n",
-      base::with_thousands(c.before), base::with_thousands(c.after), base::with_thousands(c.added.size()),
-      base::with_thousands(c.removed.size()), base::with_thousands(c.outlines.size()),
-      base::with_thousands(c.attributes.size()));
-  out += changes_svg(c);
+  Values page;
+  page.set("title", title).set("page_css", base::asset("page.css"));
+  page.set("attribution", base::kAttribution);
+  page.set("before", base::with_thousands(c.before)).set("after", base::with_thousands(c.after));
+  page.set("added", base::with_thousands(c.added.size())).set("removed", base::with_thousands(c.removed.size()));
+  page.set("outlines", base::with_thousands(c.outlines.size()))
+      .set("values", base::with_thousands(c.attributes.size()));
+  if (std::optional<Values> map = changes_map(c)) page.add("map", std::move(*map));
   const auto table = [&](const std::string& heading, const std::vector<std::string>& columns,
                          const std::vector<std::vector<std::string>>& rows, std::size_t all) {
     if (rows.empty()) return;
-    out += "<h2>" + heading + "</h2>\n<table>\n<tr>";
-    for (const std::string& column : columns) out += "<th>" + column + "</th>";
-    out += "</tr>\n";
+    Values values;
+    values.set("heading", heading);
+    for (const std::string& column : columns) values.add("columns", Values().set("column", column));
+    Values::List lines;
     for (const auto& row : rows) {
-      out += "<tr>";
-      for (const std::string& cell : row) out += "<td>" + escaped(cell) + "</td>";
-      out += "</tr>\n";
+      Values::List cells;
+      for (const std::string& cell : row) cells.push_back(Values().set("cell", cell));
+      lines.push_back(Values().set("cells", std::move(cells)));
     }
-    out += "</table>\n";
-    if (all > rows.size())
-      out +=
-          fmt::format("<p>{} more stand in the JSON beside this page.</p>\n", base::with_thousands(all - rows.size()));
+    values.set("rows", std::move(lines));
+    values.set("more", all > rows.size() ? base::with_thousands(all - rows.size()) : std::string());
+    page.add("tables", std::move(values));
   };
   std::vector<std::vector<std::string>> rows;
   for (const Gate& g : gates)
     rows.push_back(
         {g.words, fmt::format("{:.2f}", g.value), fmt::format("{:g}", g.limit), g.exceeded() ? "too much" : "well"});
-  table("Gates", {"what", "percent", "limit", ""}, rows, rows.size());
+  table("Gates", {"what", "percent", "limit", "verdict"}, rows, rows.size());
   rows.clear();
   for (const std::string& line : c.settings_before) rows.push_back({line, ""});
   for (const std::string& line : c.settings_after) rows.push_back({"", line});
@@ -448,7 +449,7 @@ std::string changes_page(const std::string& title, const BuildChanges& c, const 
     rows.push_back({a.id, a.name, rounded(a.from), rounded(a.to), a.from_source, a.to_source, a.why});
   }
   table("Values", {"building", "what", "from", "to", "source before", "source now", "why"}, rows, c.attributes.size());
-  return out + "<p>" + base::kAttribution + "</p>\n</main>\n</body>\n</html>\n";
+  return base::filled(asset, "changes.html", std::move(page));
 }
 
 }  // namespace blockrand::run

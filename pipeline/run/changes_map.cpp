@@ -8,11 +8,12 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "pipeline/base/attribution.h"
-#include "pipeline/base/markup.h"
 #include "pipeline/base/portable_math.h"
+#include "pipeline/base/text.h"
 #include "pipeline/layer_file/layer_file.h"
 #include "pipeline/layer_file/well_known_binary.h"
 
@@ -117,10 +118,11 @@ std::vector<std::vector<const Shape*>> places_of(const std::vector<Shape>& shape
   return places;
 }
 
-using Values = std::map<std::string, std::vector<const AttributeChange*>>;
+using base::Values;
+using ValueChanges = std::map<std::string, std::vector<const AttributeChange*>>;
 
 /// One place as a figure.
-std::string drawing(const std::vector<const Shape*>& shapes, const Values& values) {
+Values drawing(const std::vector<const Shape*>& shapes, const ValueChanges& values) {
   Point2 low{1e9, 1e9}, high{-1e9, -1e9};
   for (const Shape* shape : shapes)
     for (const auto& ring : shape->rings)
@@ -136,10 +138,9 @@ std::string drawing(const std::vector<const Shape*>& shapes, const Values& value
   const auto place = [&](Point2 p) {
     return Point2{kRim + (p.x - low.x) * squeeze * scale, kRim + (high.y - p.y) * scale};
   };
-  std::string out = fmt::format(
-      "<figure>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
-      "role=\"img\">\n",
-      2 * kRim + width * scale, 2 * kRim + height * scale);
+  Values out;
+  out.set("width", fmt::format("{:.0f}", 2 * kRim + width * scale));
+  out.set("height", fmt::format("{:.0f}", 2 * kRim + height * scale));
   for (const Shape* shape : shapes) {
     std::string path;
     Point2 least{1e9, 1e9}, most{-1e9, -1e9};
@@ -155,43 +156,44 @@ std::string drawing(const std::vector<const Shape*>& shapes, const Values& value
     std::string title = shape->id + ": " + std::string(shape->state);
     if (const auto found = values.find(shape->id); found != values.end())
       if (const std::string text = values_text(found->second); !text.empty()) title += ", " + text;
-    out += fmt::format("<g class=\"{}\"><title>{}</title>", shape->state, base::escaped(title));
-    if (std::max(most.x - least.x, most.y - least.y) < 2 * kDot)
-      out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:g}\"/>", (least.x + most.x) / 2,
-                         (least.y + most.y) / 2, kDot);
-    else
-      out += "<path fill-rule=\"evenodd\" stroke=\"#fff\" stroke-width=\"0.6\" d=\"" + path + "\"/>";
-    out += "</g>\n";
+    Values drawn;
+    drawn.set("state", shape->state).set("title", title).set("path", false).set("dot", false);
+    if (std::max(most.x - least.x, most.y - least.y) < 2 * kDot) {
+      Values dot;
+      dot.set("x", fmt::format("{:.1f}", (least.x + most.x) / 2))
+          .set("y", fmt::format("{:.1f}", (least.y + most.y) / 2));
+      drawn.add("dot", std::move(dot.set("radius", fmt::format("{:g}", kDot))));
+    } else {
+      drawn.set("path", std::move(path));
+    }
+    out.add("shapes", std::move(drawn));
   }
-  return out +
-         fmt::format("</svg>\n<figcaption>{} {} around {:.5f}, {:.5f} (latitude, longitude)</figcaption>\n</figure>\n",
-                     shapes.size(), shapes.size() == 1 ? "building" : "buildings", (low.y + high.y) / 2,
-                     (low.x + high.x) / 2);
+  out.set("caption",
+          fmt::format("{} {} around {:.5f}, {:.5f} (latitude, longitude)", shapes.size(),
+                      shapes.size() == 1 ? "building" : "buildings", (low.y + high.y) / 2, (low.x + high.x) / 2));
+  return out;
 }
 
 }  // namespace
 
-std::string changes_svg(const BuildChanges& c) {
+std::optional<Values> changes_map(const BuildChanges& c) {
   std::vector<Shape> shapes;
   for (const auto& [id, outline] : c.footprints) {
     if (shapes.size() == kMostShapes) break;
     Shape shape{id, state_of(id, c), rings_of(outline)};
     if (!shape.rings.empty()) shapes.push_back(std::move(shape));
   }
-  if (shapes.empty()) return {};
+  if (shapes.empty()) return std::nullopt;
   const auto values = values_by_id(c);
   const std::vector<std::vector<const Shape*>> places = places_of(shapes);
-  std::string out = "<style>.new{fill:#2a9d4b}.gone{fill:#d1495b}.changed{fill:#2e6fb7}</style>\n";
+  Values out;
   std::size_t drawn = 0;
   for (std::size_t i = 0; i < std::min(places.size(), kMostPlaces); ++i) {
-    out += drawing(places[i], values);
+    out.add("places", drawing(places[i], values));
     drawn += places[i].size();
   }
-  out += "<p>Buildings that differ, north up: new ones green, those that are gone red, others blue.";
-  if (c.footprints.size() > drawn)
-    out +=
-        fmt::format(" {} more, in other places, are in the GeoPackage beside this page.", c.footprints.size() - drawn);
-  return out + "</p>\n";
+  out.set("elsewhere", c.footprints.size() > drawn ? base::with_thousands(c.footprints.size() - drawn) : std::string());
+  return out;
 }
 
 void write_changes_layers(const BuildChanges& c, const std::string& path) {

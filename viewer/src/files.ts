@@ -51,7 +51,9 @@ export class Files {
     if (this.embedded) {
       const held = this.embedded[path];
       if (held === undefined) throw new FileMissing(path, 'is not part of this page');
-      return new Response(bytes_of(held));
+      const bytes = bytes_of(held);
+      const is_gzip = bytes[0] === 0x1f && bytes[1] === 0x8b;
+      return new Response(is_gzip ? new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip')) : bytes);
     }
     let answer: Response;
     try {

@@ -4,6 +4,7 @@
 
 #include "pipeline/base/markup.h"
 #include "pipeline/outputs/gzip.h"
+#include "viewer/page.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -12,6 +13,14 @@ constexpr int kLevel = 1;  // 0.18 s for 28 MB, a fifth more than level 6 leaves
 constexpr std::string_view kTileset = "tileset.json", kModel = "model/";
 
 bool is_tile(const std::string& path) { return path.starts_with("tiles/") && path.ends_with(".glb"); }
+
+void append_packed(std::string& out, std::string_view name, std::string_view content, int level) {
+  if (out.back() != '{') out += ',';
+  base::append_json(out, name);
+  out += ":\"";
+  base::append_base64(out, gzip(content, level));
+  out += '"';
+}
 
 }  // namespace
 
@@ -37,11 +46,7 @@ std::optional<std::string> embedded_view(std::span<const base::PublishedFile> fi
   std::string out = "{\"files\":{";
   bool fits = true;
   const auto add = [&](const std::string& path, std::string_view content) {
-    if (out.back() != '{') out += ',';
-    base::append_json(out, path);
-    out += ":\"";
-    base::append_base64(out, gzip(content, kLevel));
-    out += '"';
+    append_packed(out, path, content, kLevel);
     fits = out.size() <= most;
   };
   add("view.json", view_json(view));
@@ -52,6 +57,12 @@ std::optional<std::string> embedded_view(std::span<const base::PublishedFile> fi
     if (!fits) return std::nullopt;
   }
   return out + "}}";
+}
+
+std::string embedded_viewer() {
+  std::string out = "{";
+  for (const std::string_view name : {"viewer.js", "viewer.css"}) append_packed(out, name, viewer::asset(name), 6);
+  return out + '}';
 }
 
 }  // namespace blockrand::outputs

@@ -25,4 +25,7 @@ std::optional<std::string> embedded_view(std::span<const base::PublishedFile> fi
                                          const std::function<std::string(const std::string& path)>& read,
                                          ViewRecord view, std::uint64_t most = kMostEmbedded);
 
+/// The page's own files, packed alike: {"viewer.js":"…","viewer.css":"…"}.
+std::string embedded_viewer();
+
 }  // namespace blockrand::outputs

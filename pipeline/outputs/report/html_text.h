@@ -13,7 +13,6 @@
 namespace blockrand::outputs {
 
 using base::append_base64;
-using base::escaped;
 
 inline std::string_view osm_type(model::OsmId id) {
   return id.type == model::OsmType::node ? "node" : id.type == model::OsmType::way ? "way" : "relation";
@@ -26,11 +25,8 @@ inline std::string osm_address(model::OsmId id) {
   return "https://www.openstreetmap.org/" + std::string(osm_type(id)) + "/" + std::to_string(id.number);
 }
 
-/// The id as a link to the object's page at openstreetmap.org.
-inline std::string osm_link(model::OsmId id) {
-  if (!has_page(id)) return id.text();
-  return "<a href=\"" + osm_address(id) + "\">" + id.text() + "</a>";
-}
+/// The same, or nothing where there is no page.
+inline std::string osm_link(model::OsmId id) { return has_page(id) ? osm_address(id) : std::string(); }
 
 /// Rounded half up to `decimals` places, thousands separated; not negative.
 inline std::string rounded(double value, int decimals = 0) {
@@ -45,12 +41,12 @@ inline std::string rounded(double value, int decimals = 0) {
   return out;
 }
 
-/// "12 %"; "< 1 %" and "> 99 %" where rounding would claim none or all.
+/// "12 %", not escaped; "< 1 %" and "> 99 %" where rounding would claim none or all.
 inline std::string percent(std::uint64_t part, std::uint64_t whole) {
   if (whole == 0) return "\u2013";
   const std::uint64_t p = (part * 200 + whole) / (2 * whole);
-  if (p == 0 && part > 0) return "&lt;\u00a01\u00a0%";
-  if (p == 100 && part < whole) return "&gt;\u00a099\u00a0%";
+  if (p == 0 && part > 0) return "<\u00a01\u00a0%";
+  if (p == 100 && part < whole) return ">\u00a099\u00a0%";
   return std::to_string(p) + "\u00a0%";
 }
 

@@ -37,6 +37,12 @@ struct ReportPicture {
   std::string caption;  ///< a sentence, plain text
 };
 
+/// The model that the page carries.
+struct EmbeddedModel {
+  std::string files;   ///< embedded_view()
+  std::string viewer;  ///< {"viewer.js":"…","viewer.css":"…"}, compressed and in base64 as those are
+};
+
 /// What repair and context found, for the section "Footprints and context"; empty where they did not run.
 struct ContextFacts {
   /// What repair did, as people read it: {"Corners moved", "12,345 of 67,890"}.
@@ -46,6 +52,16 @@ struct ContextFacts {
   std::array<std::uint64_t, model::kBuildingPositionCount> positions{};  ///< buildings by model::BuildingPosition
   std::optional<ReportPicture> plan;  ///< from above, edges in the colours of model/wall_segment_colours.h
   std::string plan_note;              ///< what the plan shows, where it is not the whole build; may be empty
+};
+
+/// A block of houses; its number is its place in ReportFacts::blocks, from 1.
+struct BlockFact {
+  std::string id;               ///< as context::Block has it
+  std::string streets;          ///< "Arkonaplatz, Ruppiner Straße and Granseer Straße"; may be empty
+  double area = 0;              ///< m², up to the middle of its streets
+  bool gives_ratios = false;    ///< it is whole, and built land
+  std::uint64_t buildings = 0;  ///< that belong to it, also those of other areas
+  std::vector<std::vector<std::pair<double, double>>> rings;  ///< m, build CRS
 };
 
 struct ReportFacts {
@@ -70,12 +86,16 @@ struct ReportFacts {
   double volume = 0;                                                    ///< m³
   std::uint64_t party_walls = 0;
 
+  std::vector<BlockFact> blocks;  ///< those that a building of this build belongs to, from north to south
+  bool alone = false;             ///< one tile or area of a larger build
+
   std::span<const model::ReportRow>
       rows;  ///< of all objects, sorted; outlives this. Reported ones carry the detail of their object
   std::vector<ReportedObject> objects;  ///< in id order
   std::vector<ReportFile> files;        ///< in path order, report.html itself left out
   std::vector<ReportPicture> pictures;
   std::string pictures_note;  ///< what the pictures show, where it is not the whole build; may be empty
+  std::optional<EmbeddedModel> model;
   ContextFacts context;
   std::string attribution = base::kAttribution;
 };

@@ -1,6 +1,7 @@
 // The lists of issues, and the map that they point to.
 #include <algorithm>
 
+#include "pipeline/outputs/report/houses.h"
 #include "pipeline/outputs/report/html_text.h"
 #include "pipeline/outputs/report/report_sections.h"
 
@@ -38,10 +39,8 @@ std::string_view without_id(const ListedRow& row) {
                                           : std::string_view(row.detail);
 }
 
-std::string limit_note(std::uint64_t count, std::size_t listed) {
-  if (count <= listed) return {};
-  return "<p class=\"small soft\">The first " + with_thousands(listed) + " of " + with_thousands(count) +
-         " are listed; all are in <a href=\"report.json\">report.json</a>.</p>\n";
+std::string limit(std::uint64_t count, std::size_t listed) {
+  return count <= listed ? std::string() : with_thousands(listed);
 }
 
 }  // namespace
@@ -87,14 +86,9 @@ Issues collect_issues(const MapFootprints& footprints, const ReportFacts& facts,
   return out;
 }
 
-std::string issue_section(const MapFootprints& footprints, const Issues& issues,
-                          const std::vector<std::uint32_t>& marks, const ReportFacts& facts,
-                          const ReportOptions& options) {
-  std::string out =
-      "<section id=\"issues\">\n<h2>Fallbacks and issues</h2>\n<p class=\"issues-lead\">One bad building never stops a "
-      "build. What could not be built as "
-      "mapped was built simpler, what was mended is noted, and what has no body is listed with the reason. Ids lead to "
-      "OpenStreetMap, where the data can be corrected.</p>\n";
+Values issue_values(const MapFootprints& footprints, const Issues& issues, const ReportMap& map,
+                    const ReportFacts& facts, const ReportOptions& options) {
+  Values v;
   struct Group {
     IssueClass klass;
     std::string_view title, none;
@@ -105,26 +99,26 @@ std::string issue_section(const MapFootprints& footprints, const Issues& issues,
       {IssueClass::notice, "Mended, ignored or unreadable", "The data had nothing to mend."}};
   for (const Group& group : kGroups) {
     std::uint64_t all = 0;
-    for (const CodeRows& list : issues.codes)
-      if (info(list.code).issue_class == group.klass) all += list.count;
-    out += "<h3>" + std::string(group.title) + " <span class=\"soft\">" + with_thousands(all) + "</span></h3>\n";
-    if (all == 0) out += "<p>" + std::string(group.none) + "</p>\n";
+    Values g;
+    g.set("title", group.title).set("none", group.none).set("codes", Values::List());
     for (const CodeRows& list : issues.codes) {
       if (info(list.code).issue_class != group.klass) continue;
-      const std::string code(info(list.code).text);
-      out += "<details class=\"code\" id=\"code-" + code + "\"><summary><span class=\"count\">" +
-             with_thousands(list.count) + "</span><code>" + code + "</code><span>" + escaped(info(list.code).meaning) +
-             "</span></summary>\n<ul class=\"objects\">\n";
+      all += list.count;
+      Values code;
+      code.set("code", info(list.code).text).set("count", with_thousands(list.count));
+      code.set("meaning", info(list.code).meaning).set("listed", limit(list.count, options.listed_objects));
+      Values::List rows;
       for (const ListedRow& row : list.rows) {
-        out += "<li>" + osm_link(row.object);
-        if (row.building != model::kNoIndex && std::binary_search(marks.begin(), marks.end(), row.building))
-          out += " <a class=\"small\" href=\"#at-" + footprints.buildings[row.building].osm.text() + "\">map</a>";
-        if (const std::string_view detail = without_id(row); !detail.empty())
-          out += " <span class=\"soft\">" + escaped(detail) + "</span>";
-        out += "</li>\n";
+        const bool marked = row.building != model::kNoIndex && std::ranges::binary_search(map.marks, row.building);
+        rows.emplace_back();
+        rows.back().set("link", osm_link(row.object)).set("id", row.object.text()).set("detail", without_id(row));
+        rows.back().set("map", marked ? footprints.buildings[row.building].osm.text() : std::string());
       }
-      out += "</ul>\n" + limit_note(list.count, options.listed_objects) + "</details>\n";
+      code.set("rows", std::move(rows));
+      g.add("codes", std::move(code));
     }
+    g.set("count", with_thousands(all));
+    v.add("groups", std::move(g));
   }
   // Objects that another one stands for are no issue, but nothing mapped goes unmentioned.
   struct Others {
@@ -134,81 +128,98 @@ std::string issue_section(const MapFootprints& footprints, const Issues& issues,
   constexpr Others kOthers[] = {
       {model::ObjectState::represented, "represented", "Represented by its parts: it has no body of its own."},
       {model::ObjectState::duplicate, "duplicate", "Mapped twice: the other object is modelled."}};
-  bool first = true;
+  Values represented;
+  std::uint64_t all = 0;
   for (const Others& others : kOthers) {
-    std::string items;
     std::uint64_t count = 0;
+    Values::List rows;
     for (const ReportedObject& object : facts.objects) {
       if (object.state != others.state || ++count > options.listed_objects) continue;
-      items += "<li>" + osm_link(object.id) + " <span class=\"soft\">by</span> " + osm_link(object.related) + "</li>\n";
+      rows.emplace_back();
+      rows.back().set("id", object.id.text()).set("link", osm_link(object.id));
+      rows.back().set("by", object.related.text()).set("by_link", osm_link(object.related));
     }
+    all += count;
     if (count == 0) continue;
-    if (first)
-      out += "<h3>Represented by others <span class=\"soft\">" + with_thousands(facts.represented + facts.duplicates) +
-             "</span></h3>\n";
-    first = false;
-    out += "<details class=\"code\" id=\"objects-" + std::string(others.id) + "\"><summary><span class=\"count\">" +
-           with_thousands(count) + "</span><code>" + std::string(others.id) + "</code><span>" +
-           std::string(others.text) + "</span></summary>\n<ul class=\"objects\">\n" + items + "</ul>\n" +
-           limit_note(count, options.listed_objects) + "</details>\n";
+    Values state;
+    state.set("state", others.id).set("count", with_thousands(count)).set("meaning", others.text);
+    state.set("rows", std::move(rows)).set("listed", limit(count, options.listed_objects));
+    represented.add("states", std::move(state));
   }
-  return out + "</section>\n";
+  represented.set("count", with_thousands(facts.represented + facts.duplicates));
+  if (all > 0)
+    v.add("others", std::move(represented));
+  else
+    v.set("others", false);
+  return v;
 }
 
-std::string map_section(const ReportMap& map, const ReportFacts& facts) {
-  std::string out = "<section id=\"map\">\n<h2>Map</h2>\n";
-  if (map.svg.empty()) return out + "<p>No building has a footprint.</p>\n</section>\n";
-  out += "<div class=\"themes\">\n";
-  constexpr std::string_view kThemes[kMapThemes] = {"Storeys", "Source of the storeys", "Roofs", "Issues"};
-  for (std::size_t t = 0; t < kMapThemes; ++t) {
-    const std::string id = std::string("by-") + kThemeLetter[t];
-    out += "<input type=\"radio\" name=\"by\" id=\"" + id + "\"" + (t == 0 ? " checked=\"checked\"" : "") +
-           "/><label for=\"" + id + "\">" + std::string(kThemes[t]) + "</label>\n";
-  }
-  out += map.svg;
+std::string_view class_name(MapTheme theme, std::size_t k) {
   constexpr std::string_view kStoreys[kStoreyClasses] = {"not built", "1 storey", "2",      "3",          "4",
                                                          "5",         "6",        "7 to 9", "10 and more"};
   constexpr std::string_view kRoofs[kRoofClasses] = {
       "not built", "flat", "gabled", "hipped, pyramidal", "mansard, gambrel", "shed", "round, dome, spire", "other"};
   constexpr std::string_view kIssues[kIssueClasses] = {"as asked", "mended or noticed", "simpler than asked",
                                                        "not built"};
-  for (std::size_t t = 0; t < kMapThemes; ++t) {
-    out += std::string("<ul class=\"key legend of-") + kThemeLetter[t] + "\">";
-    for (std::size_t k = 0; k < map.counts[t].size(); ++k) {
-      const std::uint64_t n = map.counts[t][k];
-      if (n == 0) continue;
-      std::string_view text;
-      switch (static_cast<MapTheme>(t)) {
-        case MapTheme::storeys:
-          text = kStoreys[k];
-          break;
-        case MapTheme::source:
-          text = k == 0 ? "not built" : model::name(static_cast<model::Source>(k - 1));
-          break;
-        case MapTheme::roof:
-          text = kRoofs[k];
-          break;
-        case MapTheme::issue:
-          text = kIssues[k];
-          break;
-      }
-      out +=
-          "<li><svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10 10\" aria-hidden=\"true\"><rect class=\"c" +
-          std::to_string(k) + "\" width=\"10\" height=\"10\" rx=\"2\"/></svg>" + std::string(text) + "<b>" +
-          with_thousands(n) + "</b></li>";
-    }
-    out += "</ul>\n";
+  switch (theme) {
+    case MapTheme::style:
+      return k == 0 ? "not classified" : style_label(static_cast<std::uint8_t>(k - 1));
+    case MapTheme::era:
+      return k == 0 ? "not classified" : era_label(static_cast<std::uint8_t>(k - 1));
+    case MapTheme::storeys:
+      return kStoreys[k];
+    case MapTheme::roof:
+      return kRoofs[k];
+    case MapTheme::storeys_source:
+    case MapTheme::height_source:
+    case MapTheme::roof_source:
+      return k == 0 ? "not built" : model::name(static_cast<model::Source>(k - 1));
+    case MapTheme::issue:
+      return kIssues[k];
   }
-  out += "</div>\n<p class=\"small soft\">";
-  if (!map.note.empty()) out += map.note + " ";
-  if (map.outside > 0)
-    out += with_thousands(map.outside) + (map.outside == 1 ? " building lies" : " buildings lie") +
-           " far from the others, outside of the map. ";
-  if (map.without_area > 0)
-    out += with_thousands(map.without_area) + (map.without_area == 1 ? " building has" : " buildings have") +
-           " no footprint left. ";
-  out += "Numbers count buildings. Map data " + escaped(facts.attribution) + ".</p>\n";
-  return out + "</section>\n";
+  return {};
+}
+
+Values map_values(const MapFootprints& footprints, const ReportMap& map, const ReportFacts& facts, bool styles) {
+  Values v;
+  if (!map.drawn) return v.set("frame", false);
+  Values f;
+  constexpr std::string_view kThemes[kMapThemes] = {
+      "Style", "Era", "Storeys", "Roofs", "Source of storeys", "Source of heights", "Source of roofs", "Issues"};
+  for (std::size_t t = 0; t < kMapThemes; ++t) {
+    const auto theme = static_cast<MapTheme>(t);
+    if (!styles && (theme == MapTheme::style || theme == MapTheme::era)) continue;
+    Values entry;
+    entry.set("letter", std::string(1, kThemeLetter[t])).set("name", kThemes[t]);
+    entry.set("checked", theme == (styles ? MapTheme::style : MapTheme::storeys));
+    entry.set("classes", Values::List());
+    for (std::size_t k = 0; k < map.counts[t].size(); ++k)
+      if (const std::uint64_t n = map.counts[t][k]; n > 0)
+        entry.add(
+            "classes",
+            Values().set("class", std::to_string(k)).set("text", class_name(theme, k)).set("count", with_thousands(n)));
+    f.add("themes", std::move(entry));
+  }
+  f.set("ratio", map.ratio).set("width", std::to_string(map.width)).set("height", std::to_string(map.height));
+  f.set("metres", std::to_string(map.metres)).set("far", map.far).set("paths", map.paths);
+  f.set("bar", map.bar_share).set("bar_length", map.bar_length);
+  f.set("blocks", Values::List()).set("marks", Values::List());
+  for (const auto& [number, d] : map.blocks)
+    f.add("blocks", Values().set("number", std::to_string(number)).set("d", d));
+  Values::List marks;
+  for (const std::uint32_t b : map.marks) {
+    marks.emplace_back();
+    marks.back().set("id", footprints.buildings[b].osm.text()).set("radius", std::to_string(map.radius));
+    marks.back().set("x", std::to_string(map.places[b]->x)).set("y", std::to_string(map.places[b]->y));
+  }
+  f.set("marks", std::move(marks));
+  f.set("note", map.note).set("attribution", facts.attribution);
+  const auto buildings = [](std::uint64_t n, std::string_view one, std::string_view many) {
+    return n == 0 ? std::string() : with_thousands(n) + std::string(n == 1 ? one : many);
+  };
+  f.set("outside", buildings(map.outside, " building lies", " buildings lie"));
+  f.set("without_area", buildings(map.without_area, " building has", " buildings have"));
+  return v.add("frame", std::move(f));
 }
 
 }  // namespace blockrand::outputs

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "pipeline/outputs/report/html_text.h"
@@ -15,7 +16,11 @@ constexpr std::int64_t kFar = 60'000;
 /// Class of a footprint in every theme, as one number.
 struct Classes {
   std::array<std::uint8_t, kMapThemes> of{};
-  std::uint32_t key() const { return of[0] | of[1] << 8 | of[2] << 16 | static_cast<std::uint32_t>(of[3]) << 24; }
+  std::uint64_t key() const {
+    std::uint64_t all = 0;
+    for (std::size_t t = kMapThemes; t-- > 0;) all = all << 8 | of[t];
+    return all;
+  }
   std::string text() const {
     std::string out;
     for (std::size_t t = 0; t < kMapThemes; ++t) {
@@ -106,9 +111,20 @@ class MapWriter {
     classes_.resize(footprints.buildings.size());
     for (std::size_t b = 0; b < boxes_.size(); ++b) {
       const MapBuilding& building = footprints.buildings[b];
-      classes_[b].of = {static_cast<std::uint8_t>(storey_class(building)),
-                        static_cast<std::uint8_t>(building.built ? 1 + static_cast<int>(building.storeys_source) : 0),
-                        static_cast<std::uint8_t>(roof_class(building)), issue[b]};
+      const auto answer = [](std::uint8_t value) {
+        return static_cast<std::uint8_t>(value == kNotClassified ? 0 : value + 1);
+      };
+      const auto source = [&](model::Source value) {
+        return static_cast<std::uint8_t>(building.built ? 1 + static_cast<int>(value) : 0);
+      };
+      classes_[b].of = {answer(building.style),
+                        answer(building.era),
+                        static_cast<std::uint8_t>(storey_class(building)),
+                        static_cast<std::uint8_t>(roof_class(building)),
+                        source(building.storeys_source),
+                        source(building.height_source),
+                        source(building.roof_source),
+                        issue[b]};
       for (std::uint32_t ring = building.first_ring; ring < building.first_ring + building.ring_count; ++ring)
         for (std::uint32_t c = footprints.ring_begin(ring); c < footprints.ring_ends[ring]; ++c) {
           const MapPoint p = footprints.corners[c];
@@ -231,7 +247,7 @@ class MapWriter {
 
 std::string title_of(const MapFootprints& footprints, const MapBuilding& b) {
   std::string out = b.osm.text();
-  if (b.name > 0) out += " \u201c" + escaped(footprints.names[b.name - 1]) + "\u201d";
+  if (b.name > 0) out += " \u201c" + footprints.names[b.name - 1] + "\u201d";
   if (!b.built) return out + ": not built";
   out += ": " + rounded(b.storeys, 0) + (b.storeys < 1.5f && b.storeys >= 0.5f ? " storey (" : " storeys (") +
          std::string(model::name(b.storeys_source)) + "), " + rounded(b.height, 1) + " m (" +
@@ -240,25 +256,21 @@ std::string title_of(const MapFootprints& footprints, const MapBuilding& b) {
   return out;
 }
 
-/// One element per building, with title and link.
+/// One element per building, with a title.
 std::string single_paths(MapWriter& writer, const MapFootprints& footprints) {
   std::string out;
   for (std::size_t i = 0; i < footprints.buildings.size(); ++i) {
     if (!writer.drawn(i)) continue;
     const MapBuilding& b = footprints.buildings[i];
-    const bool link = has_page(b.osm);
-    if (link) out += "<a href=\"" + osm_address(b.osm) + "\" tabindex=\"-1\">";
     out += "<path id=\"" + b.osm.text() + "\" class=\"" + writer.classes(i).text() + "\" d=\"";
     Pen pen(out);
     writer.draw(i, 1, 0, pen);
-    out += "\"><title>" + title_of(footprints, b) + "</title></path>";
-    if (link) out += "</a>";
-    out += '\n';
+    out += "\"><title>" + base::escaped(title_of(footprints, b)) + "</title></path>\n";
   }
   return out;
 }
 
-using Groups = std::map<std::uint32_t, std::pair<Classes, std::string>>;
+using Groups = std::map<std::uint64_t, std::pair<Classes, std::string>>;
 
 std::string text_of(const Groups& groups) {
   std::string out;
@@ -271,7 +283,7 @@ std::string text_of(const Groups& groups) {
 std::optional<std::string> grouped_paths(MapWriter& writer, std::size_t count, std::int64_t unit, double tolerance,
                                          std::size_t budget) {
   Groups groups;
-  std::map<std::uint32_t, Pen> pens;
+  std::map<std::uint64_t, Pen> pens;
   std::size_t bytes = 0;
   for (std::size_t b = 0; b < count; ++b) {
     if (!writer.drawn(b)) continue;
@@ -301,7 +313,7 @@ std::string cells(const MapWriter& writer, std::size_t count, std::int64_t unit,
     for (std::size_t t = 0; t < kMapThemes; ++t) ++cell.counts[t][writer.classes(b).of[t]];
   }
   Groups groups;
-  std::map<std::uint32_t, Pen> pens;
+  std::map<std::uint64_t, Pen> pens;
   for (const auto& [place, cell] : grid) {
     Classes classes;
     for (std::size_t t = 0; t < kMapThemes; ++t) {
@@ -375,16 +387,20 @@ int roof_class(const MapBuilding& b) {
 }
 
 ReportMap report_map(const MapFootprints& footprints, const std::vector<std::uint8_t>& issue,
-                     const std::vector<std::uint32_t>& marked, const MapBudget& budget) {
+                     const std::vector<std::uint32_t>& marked, const std::vector<MapOutline>& outlines,
+                     const MapBudget& budget) {
   ReportMap out;
-  constexpr int kClasses[kMapThemes] = {kStoreyClasses, kSourceClasses, kRoofClasses, kIssueClasses};
+  constexpr int kClasses[kMapThemes] = {kStyleClasses,  kEraClasses,    kStoreyClasses, kRoofClasses,
+                                        kSourceClasses, kSourceClasses, kSourceClasses, kIssueClasses};
   for (std::size_t t = 0; t < kMapThemes; ++t) out.counts[t].assign(static_cast<std::size_t>(kClasses[t]), 0);
   MapWriter writer(footprints, issue);
   const std::size_t count = footprints.buildings.size();
   for (std::size_t b = 0; b < count; ++b)
     for (std::size_t t = 0; t < kMapThemes; ++t) ++out.counts[t][writer.classes(b).of[t]];
   for (std::size_t b = 0; b < count; ++b) out.without_area += !writer.drawn(b);
+  out.places.resize(count);
   if (!writer.choose_frame(out.outside)) return out;
+  out.drawn = true;
   const std::int64_t width = writer.frame().east - writer.frame().west,
                      height = writer.frame().north - writer.frame().south;
 
@@ -419,29 +435,37 @@ ReportMap report_map(const MapFootprints& footprints, const std::vector<std::uin
     }
   }
 
-  const std::string w = std::to_string(width / unit), h = std::to_string(height / unit);
-  const std::int64_t bar = scale_bar(width);
-  out.svg = "<div class=\"frame\" style=\"max-width:calc(max(26rem, 88vh * " +
-            rounded(static_cast<double>(width) / static_cast<double>(height), 3) +
-            "))\">\n<svg xmlns=\"http://www.w3.org/2000/svg\" id=\"map-svg\" viewBox=\"0 0 " + w + " " + h +
-            "\" role=\"img\" aria-label=\"Map of the footprints\" data-metres=\"" + std::to_string(width / 10) +
-            "\">\n" + "<g class=\"footprints" + (width > kFar ? " far" : "") + "\">\n" + paths +
-            "</g>\n<g class=\"marks\">\n";
-  const std::string radius = std::to_string(std::max<std::int64_t>(1, std::max(width, height) / unit / 60));
-  for (const std::uint32_t b : marked) {
+  out.paths = std::move(paths);
+  out.width = width / unit;
+  out.height = height / unit;
+  out.metres = width / 10;
+  out.far = width > kFar;
+  out.ratio = rounded(static_cast<double>(width) / static_cast<double>(height), 3);
+  out.radius = std::max<std::int64_t>(1, std::max(width, height) / unit / 60);
+  for (std::size_t b = 0; b < count; ++b) {
     if (!writer.drawn(b)) continue;
     const MapPoint p = writer.middle(b);
-    out.marks.push_back(b);
-    out.svg += "<circle id=\"at-" + footprints.buildings[b].osm.text() + "\" cx=\"" +
-               std::to_string(writer.column(p.x, unit)) + "\" cy=\"" + std::to_string(writer.row(p.y, unit)) +
-               "\" r=\"" + radius + "\"/>\n";
+    out.places[b] = {static_cast<std::int32_t>(writer.column(p.x, unit)),
+                     static_cast<std::int32_t>(writer.row(p.y, unit))};
   }
+  std::copy_if(marked.begin(), marked.end(), std::back_inserter(out.marks),
+               [&](std::uint32_t b) { return writer.drawn(b); });
+  for (const MapOutline& outline : outlines) {
+    std::string d;
+    Pen pen(d);
+    for (const std::vector<MapPoint>& ring : outline.rings) {
+      if (ring.size() < 3) continue;
+      pen.begin_ring(writer.column(ring[0].x, unit), writer.row(ring[0].y, unit));
+      for (std::size_t i = 1; i < ring.size(); ++i)
+        pen.line(writer.column(ring[i].x, unit), writer.row(ring[i].y, unit));
+      pen.close();
+    }
+    if (!d.empty()) out.blocks.emplace_back(outline.number, std::move(d));
+  }
+  const std::int64_t bar = scale_bar(width);
   const std::uint64_t per_mille = static_cast<std::uint64_t>(bar) * 10'000 / static_cast<std::uint64_t>(width);
-  out.svg += "</g>\n</svg>\n<div class=\"scale\"><span class=\"bar\" style=\"width:" + std::to_string(per_mille / 10) +
-             "." + std::to_string(per_mille % 10) + "%\"></span><span class=\"length\">" + metres(bar * 10) +
-             "</span></div>\n" +
-             "<div class=\"north\" title=\"Grid north is up\">N<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 "
-             "20 30\" aria-hidden=\"true\"><path d=\"M10 0L18 30 10 24 2 30z\"/></svg></div>\n</div>\n";
+  out.bar_share = std::to_string(per_mille / 10) + "." + std::to_string(per_mille % 10);
+  out.bar_length = metres(bar * 10);
   return out;
 }
 

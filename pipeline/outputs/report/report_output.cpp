@@ -3,10 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <tuple>
 
 #include "pipeline/base/text.h"
 #include "pipeline/base/version.h"
+#include "pipeline/outputs/buildings_here.h"
 #include "pipeline/outputs/plan/plan_picture.h"
+#include "pipeline/outputs/report/embedded_view.h"
+#include "pipeline/outputs/report/houses.h"
 #include "pipeline/outputs/report/pictures.h"
 #include "pipeline/outputs/report/report_facts.h"
 #include "pipeline/outputs/report/report_page.h"
@@ -34,6 +43,61 @@ std::vector<std::pair<std::string, std::string>> repair_lines(const footprints::
       {"Outlines with a main direction", with_thousands(t.squared)},
       {"Curved walls", with_thousands(t.arcs)}};
   if (t.at_cuts > 0) out.emplace_back("Buildings at cuts of long rows", with_thousands(t.at_cuts));
+  return out;
+}
+
+/// "Arkonaplatz, Ruppiner Straße and Granseer Straße": names of the streets around a block, the longest side first.
+std::string streets_around(const context::Block& block, const std::vector<context::NetworkLine>& lines) {
+  std::map<std::string_view, double> lengths;
+  for (const context::BlockBorder& border : block.borders) {
+    const context::NetworkLine& line = lines[border.line];
+    if (context::is_street(line.kind) && !line.name.empty()) lengths[line.name] += border.length;
+  }
+  std::vector<std::pair<std::string_view, double>> names(lengths.begin(), lengths.end());
+  std::ranges::stable_sort(names, std::greater<>(), [](const auto& name) { return name.second; });
+  constexpr std::size_t kNamed = 4;
+  std::string out;
+  const std::size_t named = std::min(names.size(), kNamed);
+  for (std::size_t i = 0; i < named; ++i) {
+    if (i > 0) out += i + 1 == names.size() ? " and " : ", ";
+    out += names[i].first;
+  }
+  if (names.size() > named) out += " and " + std::to_string(names.size() - named) + " more";
+  return out;
+}
+
+/// Blocks of the buildings of this build, in rows from north to south, each from west to east.
+std::vector<BlockFact> block_facts(const OutputContext& context) {
+  const context::ContextExtract& c = context.context;
+  const std::vector<bool> here = buildings_here(context.repaired, context.shards, context.alone);
+  std::vector<std::uint64_t> all(c.blocks.size()), ours(c.blocks.size());
+  for (std::size_t b = 0; b < c.block_of.size(); ++b) {
+    if (c.block_of[b] == model::kNoIndex) continue;
+    ++all[c.block_of[b]];
+    if (here[b]) ++ours[c.block_of[b]];
+  }
+  constexpr double kRow = 200;  // m: the depth of a block with its street
+  std::vector<std::tuple<std::int64_t, double, std::uint32_t>> order;
+  for (std::uint32_t i = 0; i < c.blocks.size(); ++i) {
+    if (ours[i] == 0) continue;
+    double west = 1e300, north = -1e300;
+    for (const model::Point2& p : c.blocks[i].polygon.outer.points)
+      west = std::min(west, p.x), north = std::max(north, p.y);
+    order.emplace_back(-static_cast<std::int64_t>(std::floor(north / kRow)), west, i);
+  }
+  std::ranges::sort(order);
+  std::vector<BlockFact> out;
+  for (const auto& [row, west, i] : order) {
+    const context::Block& block = c.blocks[i];
+    BlockFact fact{block.id, streets_around(block, c.lines), block.area, block.gives_ratios(), all[i], {}};
+    const auto ring = [&](const model::Ring& r) {
+      fact.rings.emplace_back();
+      for (const model::Point2& p : r.points) fact.rings.back().emplace_back(p.x, p.y);
+    };
+    ring(block.polygon.outer);
+    for (const model::Ring& hole : block.polygon.holes) ring(hole);
+    out.push_back(std::move(fact));
+  }
   return out;
 }
 
@@ -75,6 +139,8 @@ ReportFacts report_facts(const OutputContext& context, const FinishedBuild& buil
   f.context.edges = t.edges;
   f.context.edge_length = t.edge_length;
   f.context.positions = t.positions;
+  f.blocks = block_facts(context);
+  f.alone = context.alone.has_value();
   f.rows = build.rows;
   for (const model::MappedBuilding& b : context.extract.buildings)
     if (b.state != model::ObjectState::modelled) f.objects.push_back({b.id, b.kind, b.state, b.code, b.related});
@@ -85,10 +151,12 @@ ReportFacts report_facts(const OutputContext& context, const FinishedBuild& buil
 PlanWords plan_words(const OutputContext& context, std::uint64_t buildings) {
   return {context.name, about_words(buildings, context.data_time, context.crs), attribution(context), generator()};
 }
+constexpr const char* kTable = "buildings.csv";
 
 /// What a tile gives to the page.
 struct TileShare {
   ReportTile page;
+  std::string table;  ///< lines of buildings.csv
   PictureTile picture;
   picture::PlanTile plan;
 };
@@ -99,11 +167,15 @@ class ReportOutput : public OutputOf<TileShare> {
       : context_(context),
         picture_plan_(plan_pictures(context.shards, context.repaired, context.projection)),
         pictures_(picture_plan_),
-        plan_choice_(choose_plan(context.shards, context.projection, picture_plan_)) {}
+        plan_choice_(choose_plan(context.shards, context.projection, picture_plan_)),
+        table_(context.folder.create(kTable)) {
+    table_.append(csv_head());
+  }
 
   std::any write_tile(FinishedTile& tile) const override {
     TileShare share;
     share.page = report_tile(tile.region);
+    share.table = csv_lines(tile.region, share.page, context_.projection);
     share.picture = picture_tile(tile.region, picture_plan_, tile.shard);
     if (plan_choice_.chosen[tile.shard]) share.plan = picture::plan_tile(tile.region);
     return share;
@@ -119,6 +191,7 @@ class ReportOutput : public OutputOf<TileShare> {
   }
   void take(const FinishedTile&, std::any product) override {
     TileShare& share = *std::any_cast<TileShare>(&product);
+    table_.append(share.table);
     page_.add(std::move(share.page));
     pictures_.add(std::move(share.picture));
     if (!share.plan.buildings.empty()) plans_.push_back(std::move(share.plan));
@@ -128,21 +201,42 @@ class ReportOutput : public OutputOf<TileShare> {
     PlanSheet plan = draw_plan(std::move(plans_), context_.context, plan_choice_, context_.projection,
                                plan_words(context_, page_.buildings_built()), context_.memo);
     if (!plan.png.empty()) build.files.push_back(context_.folder.write("plan.png", plan.png));
+    build.files.push_back(table_.close());
     std::ranges::sort(build.files, {}, &base::PublishedFile::path);
     ReportFacts facts = report_facts(context_, build, page_);
     if (!plan.png.empty()) facts.context.plan = std::move(plan.in_report);
     facts.context.plan_note = std::move(plan.note);
     facts.pictures_note = pictures_.note();
     facts.pictures = pictures_.take(context_.workers, context_.memo, attribution(context_));
+    facts.model = model(build);
     build.files.push_back(context_.folder.write("report.html", page_.html(facts)));
   }
 
  private:
+  /// The 3D Tiles of a small build, for the page itself; nothing for a part of a larger build.
+  std::optional<EmbeddedModel> model(const FinishedBuild& build) const {
+    if (context_.alone) return std::nullopt;
+    ViewRecord view;
+    view.name = context_.name;
+    view.lod = context_.lod;
+    view.buildings = build.counts.models;
+    view.attribution = attribution(context_);
+    view.data_time = context_.data_time;
+    const auto read = [&](const std::string& path) {
+      std::ifstream file(context_.folder.staging_path() + "/" + path, std::ios::binary);
+      return std::string(std::istreambuf_iterator<char>(file), {});
+    };
+    std::optional<std::string> files = embedded_view(build.files, read, std::move(view));
+    if (!files) return std::nullopt;
+    return EmbeddedModel{std::move(*files), embedded_viewer()};
+  }
+
   const OutputContext& context_;
   PicturePlan picture_plan_;
   Pictures pictures_;
   PlanChoice plan_choice_;
   std::vector<picture::PlanTile> plans_;
+  base::StagedFile table_;
   ReportBuilder page_;
 };
 
@@ -152,14 +246,18 @@ OutputFormat report_output() {
   return {.name = "report",
           .in_formats = false,
           .places = {{"report.html", "what was built, where values come from, a map and pictures"},
+                     {kTable, "every building in a line, for spreadsheets"},
                      {"plan.png", "seen from above, walls in the colours of what they face",
                       [](const OutputOptions&, std::uint64_t models) { return models > 0; }}},
           .manual = {{"report.html",
                       "what was built, where values come from, what fell back and why, with a map and pictures"},
+                     {kTable,
+                      "every building in a line: address, use, storeys, height, roof, style, era, floor area, "
+                      "block, and where values come from; opens in any spreadsheet"},
                      {"plan.png",
                       "the neighbourhood from above: blocks, courtyards, walls in the colours of what they face"}},
           .asked = [](const OutputOptions& o) { return o.report; },
-          .bytes_per_building = [](const OutputOptions&, std::size_t) { return 150.0; },
+          .bytes_per_building = [](const OutputOptions&, std::size_t) { return 450.0; },
           .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<ReportOutput>(c); }};
 }
 

@@ -12,10 +12,11 @@ namespace blockrand::outputs {
 struct ReportOptions {
   std::size_t listed_objects = 300;       ///< of each code; the page says where the others are
   std::size_t map_bytes = 8'000'000;      ///< of the map's path data, beyond which details and then footprints go
-  std::size_t single_footprints = 8'000;  ///< up to here every footprint has a title and a link of its own
+  std::size_t single_footprints = 8'000;  ///< up to here every footprint has a title of its own
+  std::size_t listed_blocks = 300;        ///< by floor area; their outlines are on the map
 };
 
-/// Collects tiles and writes the page. Memory: about 60 bytes a building and 8 a corner; while writing, the page besides.
+/// Collects tiles and writes the page. Memory: about 120 bytes a building and 8 a corner; while writing, the page besides.
 class ReportBuilder {
  public:
   /// Takes a tile; call in tile order, since the page keeps it.

@@ -1,6 +1,7 @@
 #include "pipeline/outputs/report/report_sections.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "pipeline/model/building.h"
 #include "pipeline/outputs/report/html_text.h"
@@ -14,11 +15,6 @@ std::string count_of(std::uint64_t n, std::string_view one, std::string_view man
   return with_thousands(n) + " " + std::string(n == 1 ? one : many);
 }
 
-void fact(std::string& out, std::string_view name, std::string_view escaped_value) {
-  if (escaped_value.empty()) return;
-  out += "<dt>" + std::string(name) + "</dt><dd>" + std::string(escaped_value) + "</dd>\n";
-}
-
 /// "storey_height" → "Storey height"; some names say more in other words.
 std::string label(std::string_view name) {
   if (name == "min_height") return "Underside above ground";
@@ -27,23 +23,24 @@ std::string label(std::string_view name) {
   std::string out(name);
   std::replace(out.begin(), out.end(), '_', ' ');
   if (!out.empty() && out[0] >= 'a' && out[0] <= 'z') out[0] = static_cast<char>(out[0] - 'a' + 'A');
-  return escaped(out);
+  return out;
 }
 
-constexpr std::string_view kSourceMeaning[model::kSourceCount] = {"a correction by the user",
-                                                                  "a tag of the object",
-                                                                  "follows from another tag",
-                                                                  "taken from the building\u2019s parts",
-                                                                  "seen in an aerial image",
-                                                                  "measured in an elevation model",
-                                                                  "read from the footprint\u2019s shape",
-                                                                  "like tagged neighbours",
-                                                                  "like the rest of its block",
-                                                                  "like its surroundings",
-                                                                  "usual in its district",
-                                                                  "usual in the region",
-                                                                  "usual for this kind of building",
-                                                                  "nothing known: a general value"};
+constexpr std::string_view kSourceMeaning[model::kSourceCount] = {
+    "given by the user: a correction, or an option for all",
+    "a tag of the object",
+    "follows from another tag",
+    "taken from the building\u2019s parts",
+    "seen in an aerial image",
+    "measured in an elevation model",
+    "read from the footprint\u2019s shape",
+    "like tagged neighbours",
+    "like the rest of its block",
+    "like its surroundings",
+    "usual in its district",
+    "usual in the region",
+    "usual for this kind of building",
+    "nothing known: a general value"};
 
 /// The number of a source as CSS class, or 0 for a name that no list knows.
 int source_number(std::string_view name) {
@@ -52,32 +49,47 @@ int source_number(std::string_view name) {
   return 0;
 }
 
-std::string swatch(const std::string& css_class) {
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10 10\" aria-hidden=\"true\"><rect class=\"" +
-         css_class + "\" width=\"10\" height=\"10\" rx=\"2\"/></svg>";
+Values picture(const ReportPicture& p) {
+  std::string png;
+  append_base64(png, p.png);
+  Values values;
+  values.set("width", std::to_string(p.width)).set("height", std::to_string(p.height));
+  values.set("caption", p.caption).set("png", std::move(png));
+  return values;
 }
 
 }  // namespace
 
-std::string head_section(const ReportFacts& f, bool styles) {
-  std::string out = "<header>\n<p class=\"kicker\">Blockrand report</p>\n<h1>" + escaped(f.name) + "</h1>\n";
-  out += "<p class=\"lead\">" + count_of(f.buildings_built, "building", "buildings") + " rebuilt in 3D as " +
-         count_of(f.bodies, "body", "bodies") +
-         ", from what OpenStreetMap says about them and, where it is silent, from " +
-         "assumptions that this page shows.</p>\n";
-  const auto box = [&](std::uint64_t n, std::string_view text) {
-    return "<div><b>" + with_thousands(n) + "</b><span>" + std::string(text) + "</span></div>";
-  };
-  out += "<div class=\"sum\">" + box(f.buildings_in + f.parts_in, "mapped objects") + "<i>=</i>" +
-         box(f.models, "modelled") + "<i>+</i>" + box(f.represented + f.duplicates, "represented by others") +
-         "<i>+</i>" + box(f.reported, "not modelled") + "</div>\n";
-  out +=
-      "<p class=\"soft small\">Nothing mapped is lost: every object with <code>building</code> or "
-      "<code>building:part</code> (" +
-      count_of(f.buildings_in, "building", "buildings") + ", " + count_of(f.parts_in, "part", "parts") +
-      ") is modelled, stands for another one, or is listed below with a reason.";
-  if (f.duplicates > 0) out += " Of those represented, " + with_thousands(f.duplicates) + " are mapped twice.";
-  out += "</p>\n<dl class=\"facts\">\n";
+Values bar_values(const std::vector<BarPart>& parts, std::uint64_t all, std::uint64_t sum) {
+  Values values;
+  Values::List rects;
+  std::string words;
+  std::uint64_t before = 0;
+  for (const BarPart& part : parts) {
+    if (part.count == 0) continue;
+    // Borders are rounded, not widths: together they are as long as the sum.
+    const std::uint64_t from = before * 10000 / all, to = (before + part.count) * 10000 / all;
+    before += part.count;
+    const std::string text = part.name + " " + with_thousands(part.count) + " (" + percent(part.count, sum) + ")";
+    words += (words.empty() ? "" : ", ") + text;
+    Values rect;
+    rect.set("class", part.css_class).set("x", std::to_string(from)).set("width", std::to_string(to - from));
+    rect.set("text", text);
+    rects.push_back(std::move(rect));
+  }
+  values.set("words", words.empty() ? std::string("none") : words).set("rects", std::move(rects));
+  return values;
+}
+
+Values head_values(const ReportFacts& f) {
+  Values v;
+  v.set("buildings_built", count_of(f.buildings_built, "building", "buildings"));
+  v.set("bodies", count_of(f.bodies, "body", "bodies"));
+  v.set("objects", with_thousands(f.buildings_in + f.parts_in)).set("models", with_thousands(f.models));
+  v.set("represented", with_thousands(f.represented + f.duplicates)).set("reported", with_thousands(f.reported));
+  v.set("buildings_in", count_of(f.buildings_in, "building", "buildings"));
+  v.set("parts_in", count_of(f.parts_in, "part", "parts"));
+  v.set("duplicates", f.duplicates > 0 ? with_thousands(f.duplicates) : std::string());
   std::string levels;
   constexpr std::string_view kLevels[] = {"LoD\u00a00 (footprint)", "LoD\u00a01 (block)", "LoD\u00a02 (with roof)",
                                           "LoD\u00a03 (with facades)"};
@@ -87,57 +99,37 @@ std::string head_section(const ReportFacts& f, bool styles) {
     if (!levels.empty()) levels += ", ";
     levels += std::string(kLevels[lod]) + ": " + with_thousands(n);
   }
-  fact(out, "Level of detail", levels);
-  fact(out, "Data as of", f.data_time.empty() ? "not stated in the file" : escaped(f.data_time));
-  std::string crs = escaped(f.crs_code) + (f.crs_name.empty() ? "" : ", " + escaped(f.crs_name));
+  v.set("levels", levels).set("data_time", f.data_time);
+  std::string crs = f.crs_code + (f.crs_name.empty() ? "" : ", " + f.crs_name);
   if (f.crs_accuracy >= 0) crs += " (datum accuracy " + rounded(f.crs_accuracy, 1) + "\u00a0m)";
-  fact(out, "Coordinates", crs);
-  fact(out, "Heights", escaped(f.height_reference) + (f.vertical_crs.empty() ? "" : ", " + escaped(f.vertical_crs)));
+  v.set("crs", crs).set("heights", f.height_reference + (f.vertical_crs.empty() ? "" : ", " + f.vertical_crs));
+  std::string lon, lat;
   if (f.centre_longitude != 0 || f.centre_latitude != 0) {
-    std::string lon, lat;
     append_number(lon, static_cast<double>(static_cast<std::int64_t>(f.centre_longitude * 1e5)) / 1e5);
     append_number(lat, static_cast<double>(static_cast<std::int64_t>(f.centre_latitude * 1e5)) / 1e5);
-    fact(out, "Place",
-         "<a href=\"https://www.openstreetmap.org/#map=15/" + lat + "/" + lon + "\">" + lat + ", " + lon +
-             "</a> (latitude, longitude)");
   }
-  fact(out, "Built by", "Blockrand " + escaped(f.program_version));
-  out += "</dl>\n<nav>" + std::string(f.pictures.empty() ? "" : "<a href=\"#pictures\">Pictures</a>") +
-         "<a href=\"#map\">Map</a>" + (has_context(f) ? "<a href=\"#context\">Footprints and context</a>" : "") +
-         (styles ? "<a href=\"#styles\">Styles</a>" : "") +
-         "<a href=\"#sources\">Where values come from</a><a href=\"#issues\">Fallbacks and issues</a>"
-         "<a href=\"#statistics\">Statistics</a><a href=\"#files\">Files</a></nav>\n</header>\n";
-  return out;
+  v.set("longitude", lon).set("latitude", lat);
+  return v;
 }
 
-std::string picture_section(const ReportFacts& f) {
-  if (f.pictures.empty()) return {};
-  std::string out = "<section id=\"pictures\">\n<h2>Pictures</h2>\n";
-  if (!f.pictures_note.empty()) out += "<p>" + escaped(f.pictures_note) + "</p>\n";
-  const auto figure = [&](const ReportPicture& p) {
-    out += "<figure><img width=\"" + std::to_string(p.width) + "\" height=\"" + std::to_string(p.height) + "\" alt=\"" +
-           escaped(p.caption) + "\" src=\"data:image/png;base64,";
-    append_base64(out, p.png);
-    out += "\"/><figcaption>" + escaped(p.caption) + "</figcaption></figure>\n";
-  };
-  figure(f.pictures[0]);
-  if (f.pictures.size() > 1) {
-    out += "<div class=\"pair\">\n";
-    for (std::size_t i = 1; i < f.pictures.size(); ++i) figure(f.pictures[i]);
-    out += "</div>\n";
-  }
-  return out + "</section>\n";
+std::optional<Values> picture_values(const ReportFacts& f) {
+  if (f.pictures.empty()) return std::nullopt;
+  Values v;
+  v.set("note", f.pictures_note).add("first", picture(f.pictures[0]));
+  Values others;
+  for (std::size_t i = 1; i < f.pictures.size(); ++i) others.add("figures", picture(f.pictures[i]));
+  if (f.pictures.size() > 1)
+    v.add("others", std::move(others));
+  else
+    v.set("others", false);
+  return v;
 }
 
-std::string source_section(const ReportFacts& f) {
-  std::string out =
-      "<section id=\"sources\">\n<h2>Where values come from</h2>\n"
-      "<p>Maps say little about most buildings. Each bar shows, for one attribute of all bodies, which share of the "
-      "values "
-      "was mapped and which was inferred, and from what. Every single value with its source and confidence is in the "
-      "files.</p>\n";
+Values source_values(const ReportFacts& f) {
+  Values v;
+  v.set("rows", Values::List());
   std::array<bool, model::kSourceCount + 1> present{};
-  std::string rows;
+  bool any = false;
   const auto add = [&](const std::string& attribute, const std::map<std::string, std::uint64_t>& by_source) {
     std::array<std::uint64_t, model::kSourceCount + 1> counts{};
     std::uint64_t all = 0;
@@ -146,27 +138,25 @@ std::string source_section(const ReportFacts& f) {
       all += n;
     }
     if (all == 0) return;
-    std::string bar, words;
-    std::uint64_t before = 0, mapped = 0;
+    std::vector<BarPart> parts;
     for (std::size_t k = 0; k < counts.size(); ++k) {
       if (counts[k] == 0) continue;
       present[k] = true;
-      const std::string name = k == 0 ? "other" : std::string(model::name(static_cast<model::Source>(k - 1)));
-      // Borders are rounded, not widths: together they fill the bar.
-      const std::uint64_t from = before * 10000 / all, to = (before + counts[k]) * 10000 / all;
-      before += counts[k];
-      if (k >= 1 && k <= 4) mapped += counts[k];
-      const std::string text = name + " " + with_thousands(counts[k]) + " (" + percent(counts[k], all) + ")";
-      bar += "<rect class=\"b" + std::to_string(k) + "\" x=\"" + std::to_string(from) + "\" width=\"" +
-             std::to_string(to - from) + "\" height=\"10\"><title>" + text + "</title></rect>";
-      words += (words.empty() ? "" : ", ") + text;
+      const auto source = static_cast<model::Source>(k - 1);
+      parts.push_back({"b" + std::to_string(k), k == 0 ? "other" : std::string(model::name(source)), counts[k]});
     }
+    // What a user gave, by a correction or an option, is stated, but not by the map.
+    const std::uint64_t given = counts[1 + static_cast<std::size_t>(model::Source::override_)];
+    std::uint64_t mapped = 0;
+    for (const model::Source source : {model::Source::tag, model::Source::implied, model::Source::part})
+      mapped += counts[1 + static_cast<std::size_t>(source)];
+    Values row = bar_values(parts, all, all);
+    row.set("label", label(attribute)).set("mapped", percent(mapped, all));
+    row.set("given", given > 0 ? percent(given, all) : std::string());
     // Attributes that only some bodies have say of how many they speak.
-    const std::string some = all < f.bodies ? " <span class=\"soft small\">of " + with_thousands(all) + "</span>" : "";
-    rows += "<tr><td>" + label(attribute) + some +
-            "</td><td class=\"bar\"><svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10000 10\" "
-            "preserveAspectRatio=\"none\" role=\"img\" aria-label=\"" +
-            words + "\">" + bar + "</svg></td><td class=\"n\">" + percent(mapped, all) + "</td></tr>\n";
+    row.set("some", all < f.bodies ? with_thousands(all) : std::string());
+    v.add("rows", std::move(row));
+    any = true;
   };
   std::vector<std::string> known;
   const model::Attributes order;
@@ -179,74 +169,82 @@ std::string source_section(const ReportFacts& f) {
       [&](const char* name, const char*) { next(name); });
   for (const auto& [attribute, by_source] : f.sources)
     if (std::find(known.begin(), known.end(), attribute) == known.end()) add(attribute, by_source);
-  if (rows.empty()) return out + "<p>No body was built.</p>\n</section>\n";
-  out += "<ul class=\"key\">";
-  for (std::size_t k = 1; k < present.size(); ++k)
-    if (present[k])
-      out += "<li>" + swatch("b" + std::to_string(k)) + std::string(model::name(static_cast<model::Source>(k - 1))) +
-             " <span class=\"soft\">" + std::string(kSourceMeaning[k - 1]) + "</span></li>";
-  out +=
-      "</ul>\n<table class=\"sources\"><thead><tr><th>Attribute</th><th>Share of bodies</th><th class=\"n\">From the "
-      "map</th></tr></thead><tbody>\n" +
-      rows +
-      "</tbody></table>\n<details><summary>The same in numbers</summary>\n<div "
-      "class=\"wide\"><table><thead><tr><th>Attribute</th>";
-  for (std::size_t k = 1; k < present.size(); ++k)
-    if (present[k]) out += "<th class=\"n\">" + std::string(model::name(static_cast<model::Source>(k - 1))) + "</th>";
-  out += "</tr></thead><tbody>\n";
+  v.set("any", any);
+  for (std::size_t k = 1; k < present.size(); ++k) {
+    if (!present[k]) continue;
+    const std::string_view name = model::name(static_cast<model::Source>(k - 1));
+    v.add("key",
+          Values().set("swatch", "b" + std::to_string(k)).set("name", name).set("meaning", kSourceMeaning[k - 1]));
+    v.add("columns", Values().set("name", name));
+  }
   for (const auto& [attribute, by_source] : f.sources) {
-    out += "<tr><td>" + label(attribute) + "</td>";
+    Values row;
+    row.set("label", label(attribute)).set("counts", Values::List());
     for (std::size_t k = 1; k < present.size(); ++k) {
       if (!present[k]) continue;
       const auto found = by_source.find(std::string(model::name(static_cast<model::Source>(k - 1))));
-      out += "<td class=\"n\">" + (found == by_source.end() ? "" : with_thousands(found->second)) + "</td>";
+      row.add("counts",
+              Values().set("count", found == by_source.end() ? std::string() : with_thousands(found->second)));
     }
-    out += "</tr>\n";
+    v.add("numbers", std::move(row));
   }
-  return out + "</tbody></table></div></details>\n</section>\n";
+  return v;
 }
 
-std::string statistics_section(const ReportFacts& f) {
-  std::string out =
-      "<section id=\"statistics\">\n<h2>Statistics</h2>\n<div class=\"pair\"><div>\n<h3>Sizes</h3>\n<table><tbody>\n";
-  const auto row = [&](std::string_view name, const std::string& value) {
-    out += "<tr><td>" + std::string(name) + "</td><td class=\"n\">" + value + "</td></tr>\n";
+Values statistics_values(const ReportFacts& f, const ReportMap& map) {
+  Values v;
+  Values storeys;
+  const std::vector<std::uint64_t>& classes = map.counts[static_cast<std::size_t>(MapTheme::storeys)];
+  std::uint64_t built = 0;
+  for (std::size_t k = 1; k < classes.size(); ++k) built += classes[k];
+  for (std::size_t k = 1; k < classes.size(); ++k)
+    if (classes[k] > 0)
+      storeys.add("rows", Values()
+                              .set("label", class_name(MapTheme::storeys, k))
+                              .set("count", with_thousands(classes[k]))
+                              .set("share", percent(classes[k], built)));
+  if (built > 0)
+    v.add("storeys", std::move(storeys));
+  else
+    v.set("storeys", false);
+  const auto size = [&](std::string_view name, const std::string& value) {
+    v.add("sizes", Values().set("label", name).set("value", value));
   };
   const std::string square = "\u00a0m\u00b2";
-  row("Footprints", rounded(f.footprint_area) + square);
-  row("Volume", rounded(f.volume) + "\u00a0m\u00b3");
-  row("Outer walls", rounded(f.outer_wall_area) + square);
-  row("Party walls", with_thousands(f.party_walls));
-  row("\u2026 length", rounded(f.party_wall_length) + "\u00a0m");
-  row("\u2026 area", rounded(f.party_wall_area) + square);
-  out += "</tbody></table></div>\n<div><h3>Roofs as built</h3>\n<table><tbody>\n";
+  size("Footprints", rounded(f.footprint_area) + square);
+  size("Volume", rounded(f.volume) + "\u00a0m\u00b3");
+  size("Outer walls", rounded(f.outer_wall_area) + square);
+  size("Party walls", with_thousands(f.party_walls));
+  size("\u2026 length", rounded(f.party_wall_length) + "\u00a0m");
+  size("\u2026 area", rounded(f.party_wall_area) + square);
   std::vector<std::pair<std::string, std::uint64_t>> roofs(f.roofs.begin(), f.roofs.end());
   std::stable_sort(roofs.begin(), roofs.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   std::uint64_t all = 0;
   for (const auto& [shape, n] : roofs) all += n;
+  v.set("roofs", Values::List());
   for (const auto& [shape, n] : roofs)
-    out += "<tr><td>" + label(shape) + "</td><td class=\"n\">" + with_thousands(n) + "</td><td class=\"n soft\">" +
-           percent(n, all) + "</td></tr>\n";
-  return out + "</tbody></table></div></div>\n</section>\n";
+    v.add("roofs", Values().set("label", label(shape)).set("count", with_thousands(n)).set("share", percent(n, all)));
+  return v;
 }
 
-std::string file_section(const ReportFacts& f) {
+Values file_values(const ReportFacts& f) {
   struct Kind {
     std::string_view prefix, name, how;
     bool folder;
     std::uint64_t files = 0, bytes = 0;
   };
   Kind kinds[] = {
-      {"tileset.json", "3D Tiles 1.1", "CesiumJS, QGIS 3.34 or newer, Unreal, Unity: open <code>tileset.json</code>",
-       false, 0, 0},
+      {"tileset.json", "3D Tiles 1.1", "CesiumJS, QGIS 3.34 or newer, Unreal, Unity: open tileset.json", false, 0, 0},
       {"tiles/", "\u2026 its tiles", "single GLB files, for Blender and other editors", true, 0, 0},
       {"model.glb", "glTF, whole build", "Blender and other editors, 3D viewers", false, 0, 0},
       {"citygml/", "CityGML 2.0", "FME, 3DCityDB, KIT ModelViewer, azul; one file per tile", true, 0, 0},
       {"cityjson/", "CityJSON 2.0", "text sequence, one file per tile: cjio, cjseq", true, 0, 0},
       {"model.city.json", "CityJSON, whole build", "ninja.cityjson.org, azul, QGIS with its plugin", false, 0, 0},
+      {"buildings.csv", "Table of all buildings", "Excel, LibreOffice, any statistics program", false, 0, 0},
       {"buildings.gpkg", "GeoPackage", "any GIS: every attribute and its source", false, 0, 0},
       {"buildings.qgz", "QGIS project", "QGIS: the GeoPackage as a map, coloured and labelled", false, 0, 0},
-      {"explain/", "What <code>explain</code> reads", "<code>blockrand explain</code>", true, 0, 0},
+      {"explain/", "What <code>explain</code> reads", "blockrand explain", true, 0, 0},
+      {"plan.png", "Plan", "any viewer of pictures", false, 0, 0},
       {"report.json", "Every report row", "any editor or script", false, 0, 0},
   };
   for (const ReportFile& file : f.files)
@@ -255,27 +253,17 @@ std::string file_section(const ReportFacts& f) {
         ++kind.files;
         kind.bytes += file.bytes;
       }
-  std::string out =
-      "<section id=\"files\">\n<h2>Files</h2>\n<p>All paths are relative to this page.</p>\n<div "
-      "class=\"wide\"><table><thead><tr><th>What</th><th>Where</th>"
-      "<th class=\"n\">Files</th><th class=\"n\">Size</th><th>Open with</th></tr></thead><tbody>\n";
+  Values v;
   const auto row = [&](std::string_view name, std::string_view path, const std::string& files, const std::string& size,
                        std::string_view how) {
-    out += "<tr><td>" + std::string(name) + "</td><td><a href=\"" + std::string(path) + "\">" + std::string(path) +
-           "</a></td><td class=\"n\">" + files + "</td><td class=\"n\">" + size + "</td><td>" + std::string(how) +
-           "</td></tr>\n";
+    v.add("rows", Values().set("name", name).set("path", path).set("files", files).set("size", size).set("how", how));
   };
   for (const Kind& kind : kinds)
     if (kind.files > 0)
       row(kind.name, kind.prefix, with_thousands(kind.files), base::with_byte_unit(kind.bytes), kind.how);
   row("Inputs, settings, counts, hashes", "build.json", "1", "", "any editor or script");
   row("Times, memory, host", "run.json", "1", "", "any editor or script");
-  out +=
-      "</tbody></table></div>\n<h3>Why does this building look as it does?</h3>\n<p>Ask for any building of the map by "
-      "its id; "
-      "OUT is the folder of this page:</p>\n<pre><code>blockrand explain OUT w123</code></pre>\n"
-      "<p>To check every written file again:</p>\n<pre><code>blockrand validate OUT</code></pre>\n</section>\n";
-  return out;
+  return v;
 }
 
 }  // namespace blockrand::outputs

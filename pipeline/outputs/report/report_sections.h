@@ -1,32 +1,41 @@
-// The page's sections. Internal to this folder; each returns well-formed HTML with its heading.
+// What the page's templates are filled with, one function for each section. Internal to this folder. Each returns the
+// values of the template that bears its name (report/head.html, …); nothing where the section would be empty.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "pipeline/base/template.h"
 #include "pipeline/outputs/report/report_facts.h"
 #include "pipeline/outputs/report/report_map.h"
 #include "pipeline/outputs/report/report_page.h"
 
 namespace blockrand::outputs {
 
-/// What was built, from what: title, key figures.
-/// \param styles  the page has a section on styles
-std::string head_section(const ReportFacts& facts, bool styles);
-std::string picture_section(const ReportFacts& facts);
-/// Classes of appearance and eras, and what they rest on; empty where nothing was classified.
-std::string style_section(const StyleCounts& counts);
-bool has_styles(const StyleCounts& counts);
+using base::Values;
+
+/// What was built, from what: key figures.
+Values head_values(const ReportFacts& facts);
+std::optional<Values> picture_values(const ReportFacts& facts);
+/// Classes of appearance and eras, and what they rest on; nothing where no building was classified.
+std::optional<Values> style_values(const StyleCounts& counts);
+/// Gross floor areas by use, style, era and block; nothing where none was measured.
+/// \param block_number  as block_numbers
+std::optional<Values> floor_area_values(const MapFootprints& footprints, const ReportFacts& facts, const ReportMap& map,
+                                        const std::vector<std::uint32_t>& block_number, const ReportOptions& options);
+/// Parallel to footprints.names: the number of the block of that id, from 1; 0 for what is no block.
+std::vector<std::uint32_t> block_numbers(const MapFootprints& footprints, const ReportFacts& facts);
 /// Where attributes come from: one stacked bar for each.
-std::string source_section(const ReportFacts& facts);
-/// Roofs, areas, volumes.
-std::string statistics_section(const ReportFacts& facts);
+Values source_values(const ReportFacts& facts);
+/// Storeys, roofs, areas, volumes.
+Values statistics_values(const ReportFacts& facts, const ReportMap& map);
 /// Where the files are, how to open them, how to ask for one building.
-std::string file_section(const ReportFacts& facts);
-/// Empty where neither repair nor context has anything to say.
-std::string context_section(const ReportFacts& facts);
-bool has_context(const ReportFacts& facts);
+Values file_values(const ReportFacts& facts);
+/// Nothing where neither repair nor context has anything to say.
+std::optional<Values> context_values(const ReportFacts& facts);
 
 /// One line of the lists of issues: an object, and where it is on the map.
 struct ListedRow {
@@ -50,10 +59,17 @@ struct Issues {
 };
 Issues collect_issues(const MapFootprints& footprints, const ReportFacts& facts, const ReportOptions& options);
 
-/// \param marks  buildings with a mark on the map, ascending
-std::string issue_section(const MapFootprints& footprints, const Issues& issues,
-                          const std::vector<std::uint32_t>& marks, const ReportFacts& facts,
-                          const ReportOptions& options);
-std::string map_section(const ReportMap& map, const ReportFacts& facts);
+Values issue_values(const MapFootprints& footprints, const Issues& issues, const ReportMap& map,
+                    const ReportFacts& facts, const ReportOptions& options);
+/// \param styles  buildings were classified: the map begins with their styles
+Values map_values(const MapFootprints& footprints, const ReportMap& map, const ReportFacts& facts, bool styles);
+
+/// A stacked bar: shares of `all`, each in the colour of a CSS class.
+struct BarPart {
+  std::string css_class, name;
+  std::uint64_t count = 0;
+};
+/// Values of report/bar.html. \param all  what the whole width stands for  \param sum  of which percentages are told
+Values bar_values(const std::vector<BarPart>& parts, std::uint64_t all, std::uint64_t sum);
 
 }  // namespace blockrand::outputs

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "pipeline/geometry/polygon_measures.h"
@@ -10,14 +11,12 @@
 namespace blockrand::outputs {
 namespace {
 
-constexpr double kUnitsPerMetre = 10;
-
 /// Appends a ring in whole decimetres; what shrinks to less than a triangle is left out.
 bool add_ring(MapFootprints& map, const model::Ring& ring) {
   const std::size_t first = map.corners.size();
   for (const model::Point2& p : ring.points) {
-    const MapPoint q{static_cast<std::int32_t>(std::lround(p.x * kUnitsPerMetre)),
-                     static_cast<std::int32_t>(std::lround(p.y * kUnitsPerMetre))};
+    const MapPoint q{static_cast<std::int32_t>(std::lround(p.x * kMapUnitsPerMetre)),
+                     static_cast<std::int32_t>(std::lround(p.y * kMapUnitsPerMetre))};
     if (map.corners.size() == first || map.corners.back() != q) map.corners.push_back(q);
   }
   while (map.corners.size() > first + 1 && map.corners.back() == map.corners[first]) map.corners.pop_back();
@@ -42,13 +41,62 @@ std::optional<std::size_t> place_in(const std::array<std::string_view, N>& names
   return static_cast<std::size_t>(found - names.begin());
 }
 
-void count_style(const model::Building& building, StyleCounts& counts) {
+/// The names of a tile, each once: uses and blocks are those of many houses.
+class Names {
+ public:
+  explicit Names(std::vector<std::string>& names) : names_(names) {}
+  /// Index + 1; 0 for none.
+  std::uint32_t number(std::string_view name) {
+    if (name.empty()) return 0;
+    const auto [found, added] = numbers_.try_emplace(std::string(name), static_cast<std::uint32_t>(names_.size() + 1));
+    if (added) names_.emplace_back(name);
+    return found->second;
+  }
+
+ private:
+  std::vector<std::string>& names_;
+  std::map<std::string, std::uint32_t> numbers_;
+};
+
+Area in_hundredths(double square_metres) { return std::llround(square_metres * 100); }
+
+/// Footprint and floor areas. Each body counts its plan once for every storey between its underside and its eaves.
+void measure(const model::Building& building, MapBuilding& b) {
+  double standing = 0;
+  for (const model::BuildingPart& part : building.parts) {
+    if (part.canopy) continue;
+    const model::Attributes& a = part.attributes;
+    const double area = geometry::area(part.plan);
+    const bool on_ground = a.min_height.value <= 0;
+    if (on_ground) standing += area;
+    const double skipped = on_ground                ? 0.0
+                           : part.mapped.min_storey ? static_cast<double>(*part.mapped.min_storey)
+                                                    : std::max(0.0, a.min_height.value - a.plinth_height.value) /
+                                                          std::max(a.storey_height.value, 1.0);
+    const Area floors = in_hundredths(area * std::max(0.0, a.storeys.value - skipped));
+    b.floors += floors;
+    b.roof_floors += in_hundredths(area * std::max(0.0, a.roof_storeys.value));
+    if (!is_stated(a.storeys.source)) b.guessed += floors;
+  }
+  double outline = 0;
+  for (const model::Polygon& p : building.outline) outline += geometry::area(p);
+  const bool all_canopies =
+      !building.parts.empty() && std::ranges::all_of(building.parts, &model::BuildingPart::canopy);
+  // Parts may leave some of the outline to nothing, and stick out of it: the outline is what covers the ground.
+  b.footprint = in_hundredths(all_canopies ? 0.0 : outline > 0 ? outline : standing);
+}
+
+void classify(const model::Building& building, MapBuilding& b, StyleCounts& counts) {
   if (!is_classified(building.style)) return;
   // What outputs say, so that a user's correction counts; the attribute may be empty where nothing was resolved.
   const model::Attributes& a = building.attributes;
   const auto style =
       place_in(model::kStyleClassNames, a.style.value).value_or(static_cast<std::size_t>(building.style.style_class()));
   const auto era = place_in(model::kEraNames, a.era.value).value_or(static_cast<std::size_t>(building.style.built()));
+  b.style = static_cast<std::uint8_t>(style);
+  b.era = static_cast<std::uint8_t>(era);
+  b.style_source = a.style.source;
+  b.era_source = a.era.source;
   ++counts.classes[style][static_cast<std::size_t>(basis_of(a.style.source, building.style.non_house))];
   ++counts.eras[era][static_cast<std::size_t>(basis_of(a.era.source, false))];
 }
@@ -64,16 +112,28 @@ void StyleCounts::add(const StyleCounts& other) {
   sum(eras, other.eras);
 }
 
+std::optional<MapPoint> middle_of(const MapFootprints& footprints, const MapBuilding& building) {
+  if (building.ring_count == 0) return std::nullopt;
+  const auto begin = footprints.corners.begin() + footprints.ring_begin(building.first_ring);
+  const auto end = footprints.corners.begin() + footprints.ring_ends[building.first_ring + building.ring_count - 1];
+  const auto [west, east] = std::minmax_element(begin, end, [](MapPoint a, MapPoint b) { return a.x < b.x; });
+  const auto [south, north] = std::minmax_element(begin, end, [](MapPoint a, MapPoint b) { return a.y < b.y; });
+  return MapPoint{static_cast<std::int32_t>((std::int64_t{west->x} + east->x) / 2),
+                  static_cast<std::int32_t>((std::int64_t{south->y} + north->y) / 2)};
+}
+
 ReportTile report_tile(const model::Region& region) {
   ReportTile tile;
   MapFootprints& map = tile.footprints;
   const TagReader tags(region.extract);
+  Names names(map.names);
   for (const model::Building& building : region.buildings) {
     if (!building.owned) continue;
-    count_style(building, tile.styles);
     const auto index = static_cast<std::uint32_t>(map.buildings.size());
     MapBuilding b;
     b.osm = building.osm;
+    classify(building, b, tile.styles);
+    measure(building, b);
     b.first_ring = static_cast<std::uint32_t>(map.ring_ends.size());
     const model::Attributes& a = building.attributes;
     b.storeys = static_cast<float>(a.storeys.value);
@@ -98,10 +158,13 @@ ReportTile report_tile(const model::Region& region) {
     else
       for (const model::BuildingPart& part : building.parts) add_polygon(map, part.plan);
     b.ring_count = static_cast<std::uint32_t>(map.ring_ends.size()) - b.first_ring;
-    if (const std::string_view name = tags.name(building.tags); !name.empty()) {
-      map.names.emplace_back(name);
-      b.name = static_cast<std::uint32_t>(map.names.size());
-    }
+    b.name = names.number(tags.name(building.tags));
+    const Address address = tags.address(building.tags);
+    // Street and number where both are known: town and postcode are nearly always those of all others.
+    const std::string street = address.street_line();
+    b.address = names.number(!street.empty() || address.empty() ? street : address.line());
+    b.use = names.number(a.use.value);
+    b.block = names.number(building.situation.block);
     map.buildings.push_back(b);
   }
   return tile;

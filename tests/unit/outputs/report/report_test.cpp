@@ -115,12 +115,12 @@ TEST(Report, TheZooAsPage) {
   const Page html(page.html(some_facts()));
   ASSERT_TRUE(html.well_formed());
   EXPECT_EQ(html.one("//h:h1"), "A & B <1>");
-  // Halo buildings are not of this tile; every other one has its footprint, title and link.
+  // Halo buildings are not of this tile; every other one has its footprint and title, and a row with a link.
   EXPECT_EQ(html.count("//s:g[@class='footprints']//s:path"), 6u);
   EXPECT_EQ(html.count("//s:path[@id='w70']"), 0u);
   EXPECT_THAT(html.one("//s:path[@id='w12']/s:title"), HasSubstr("w12: "));
-  EXPECT_EQ(html.one("//s:a[s:path/@id='w12']/@href"), "https://www.openstreetmap.org/way/12");
-  EXPECT_EQ(html.count("//s:a[s:path/@id='w-7']"), 0u) << "an editor's new object has no page to link to";
+  EXPECT_EQ(html.one("//h:tr[@id='house-w12']//h:a/@href"), "https://www.openstreetmap.org/way/12");
+  EXPECT_EQ(html.count("//h:tr[@id='house-w-7']//h:a"), 0u) << "an editor's new object has no page to link to";
   // A hole is a ring of its own.
   const std::string court = html.one("//s:path[@id='w40']/@d");
   EXPECT_EQ(std::count(court.begin(), court.end(), 'z'), 2);
@@ -203,14 +203,14 @@ TEST(Report, ClassesFollowTheBuilding) {
   facts.rows = rows;
   const Page html(page.html(facts));
   ASSERT_TRUE(html.well_formed());
-  EXPECT_EQ(html.one("//s:path[@id='w1']/@class"), "s1 q2 r1 i1");
-  EXPECT_EQ(html.one("//s:path[@id='w2']/@class"), "s6 q8 r2 i2");
-  EXPECT_EQ(html.one("//s:path[@id='w3']/@class"), "s7 q14 r3 i0");
-  EXPECT_EQ(html.one("//s:path[@id='w4']/@class"), "s8 q1 r6 i0");
-  EXPECT_EQ(html.one("//s:path[@id='w5']/@class"), "s0 q0 r0 i3");
+  EXPECT_EQ(html.one("//s:path[@id='w1']/@class"), "a0 e0 s1 r1 q2 h2 k2 i1");
+  EXPECT_EQ(html.one("//s:path[@id='w2']/@class"), "a0 e0 s6 r2 q8 h2 k2 i2");
+  EXPECT_EQ(html.one("//s:path[@id='w3']/@class"), "a0 e0 s7 r3 q14 h2 k2 i0");
+  EXPECT_EQ(html.one("//s:path[@id='w4']/@class"), "a0 e0 s8 r6 q1 h2 k2 i0");
+  EXPECT_EQ(html.one("//s:path[@id='w5']/@class"), "a0 e0 s0 r0 q0 h0 k0 i3");
   EXPECT_THAT(html.one("//s:path[@id='w5']/s:title"), HasSubstr("not built"));
   // The legend counts every building once in each theme.
-  for (const std::string theme : {"s", "q", "r", "i"}) {
+  for (const std::string theme : {"s", "r", "q", "h", "k", "i"}) {
     long sum = 0;
     for (const std::string& n : html.all("//h:ul[contains(@class,'of-" + theme + "')]/h:li/h:b")) sum += std::stol(n);
     EXPECT_EQ(sum, 5) << theme;
@@ -280,7 +280,8 @@ TEST(Report, HostileTextStaysText) {
   facts.rows = rows;
   const Page html(page.html(facts));
   ASSERT_TRUE(html.well_formed());
-  EXPECT_EQ(html.count("//h:script"), 1u);
+  EXPECT_EQ(html.count("//h:script"), 2u) << "the page's own, and its houses";
+  EXPECT_THAT(html.one("//h:script[@id='house-data']"), HasSubstr("\\u003cscript\\u003ealert(1)")) << "data, no markup";
   EXPECT_EQ(html.count("//*[@onload]"), 0u);
   EXPECT_THAT(html.text, Not(HasSubstr("<script>alert")));
   EXPECT_THAT(html.one("//s:path[@id='w1']/s:title"), HasSubstr("<script>alert(1)</script>")) << "escaped, not lost";
