@@ -14,6 +14,7 @@
 #include "pipeline/cli/exit_codes.h"
 #include "pipeline/cli/explain_chip.h"
 #include "pipeline/cli/explain_style.h"
+#include "pipeline/cli/path_kinds.h"
 #include "pipeline/cli/terminal_text.h"
 #include "pipeline/settings/command_line.h"
 
@@ -393,6 +394,7 @@ int run_explain(const std::vector<std::string>& arguments) {
     throw base::UsageError(fmt::format("{} is no id of an OpenStreetMap object. Write {} for a way, {} for a relation.",
                                        s.id, number ? "w" + s.id : "w123", number ? "r" + s.id : "r45"));
   }
+  expect_build(s.folder);
   const auto found = outputs::find_explanation(s.folder, *id);
   if (!found)
     throw base::InputError(s.folder, "", "knows no building or building part " + id->text(),

@@ -54,6 +54,29 @@ std::string in_words(const AskedReference& reference) {
 
 }  // namespace
 
+std::string ground_warning(const georef::LonLat& place) {
+  const std::string begin = "no --terrain and no --ground-height: ", end = ". Give --ground-height or --terrain";
+  const std::string unknown = "how high the ground itself is, nothing says";
+  const std::optional<double> sea = georef::Geoid().undulation(place.lon, place.lat);
+  if (!sea)
+    return begin + "on a globe (3D Tiles) houses will stand at height 0 of the ellipsoid, not on the ground" + end;
+  if (*sea >= 0.5)
+    return begin +
+           fmt::format(
+               "on a globe (3D Tiles) houses will lie {:.0f} m below the sea level of the place, so at least that "
+               "far below land above the sea; {}",
+               *sea, unknown) +
+           end;
+  if (*sea <= -0.5)
+    return begin +
+           fmt::format(
+               "on a globe (3D Tiles) houses will lie {:.0f} m above the sea level of the place: above lower ground, "
+               "within higher ground; {}",
+               -*sea, unknown) +
+           end;
+  return begin + "on a globe (3D Tiles) houses will lie at the sea level of the place; " + unknown + end;
+}
+
 AskedReference read_height_reference(const std::string& text) {
   AskedReference asked;
   if (text.empty()) return asked;

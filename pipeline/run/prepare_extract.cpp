@@ -20,12 +20,13 @@ LocatedExtract locate_extract(const BuildOptions& options, const std::optional<T
   read_options.bbox = tile ? tile->window : options.bbox;
   model::Extract extract = store && tile ? store->read(tile->id, read_options, tile->placeless)
                                          : importers::osm::read_extract(options.input, read_options);
+  if (!options.input_told.empty()) extract.file = options.input_told;
   malloc_trim(0);  // libosmium's buffers go back to the system before tiles need the room
 
   progress.begin("locate");
   const std::optional<footprints::Area> area = footprints::area_of(extract);
   if (!area)
-    progress.warn(fmt::format("{}: no building with an outline{}; the outputs are valid but empty", options.input,
+    progress.warn(fmt::format("{}: no building with an outline{}; the outputs are valid but empty", told_input(options),
                               options.bbox || tile ? " in the given place" : ""));
   RegionFacts facts;
   if (tile) {

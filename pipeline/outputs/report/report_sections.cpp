@@ -30,7 +30,7 @@ std::string label(std::string_view name) {
   return escaped(out);
 }
 
-constexpr std::string_view kSourceMeaning[model::kSourceCount] = {"a correction by the user",
+constexpr std::string_view kSourceMeaning[model::kSourceCount] = {"said by the user: a correction, or an option",
                                                                   "a tag of the object",
                                                                   "follows from another tag",
                                                                   "taken from the building\u2019s parts",
@@ -155,7 +155,8 @@ std::string source_section(const ReportFacts& f) {
       // Borders are rounded, not widths: together they fill the bar.
       const std::uint64_t from = before * 10000 / all, to = (before + counts[k]) * 10000 / all;
       before += counts[k];
-      if (k >= 1 && k <= 4) mapped += counts[k];
+      // Not what the user said, in corrections or by an option (the height of the ground).
+      if (k >= 2 && k <= 4) mapped += counts[k];
       const std::string text = name + " " + with_thousands(counts[k]) + " (" + percent(counts[k], all) + ")";
       bar += "<rect class=\"b" + std::to_string(k) + "\" x=\"" + std::to_string(from) + "\" width=\"" +
              std::to_string(to - from) + "\" height=\"10\"><title>" + text + "</title></rect>";
