@@ -180,7 +180,7 @@ look() {
   "$program" "$@" >said 2>told </dev/null || code=$?
   {
     printf '$ blockrand %s\n' "$*"
-    sed -E -e '/ buildings and parts\/s, peak memory /d' -e 's/^[0-9.]+ [a-zA-Z]+ in ([0-9,]+ files:)$/SIZE in \1/' \
+    sed -E -e '/, peak memory /d' -e 's/^[0-9.]+ [a-zA-Z]+ in ([0-9,]+ files:)$/SIZE in \1/' \
       -e 's/^(A build would take ).* of memory and/\1TIME, SIZE of memory and/' \
       -e '/^ "estimate"|^  "estimate"/,/}/s/("seconds"|"memory_bytes"): [-+.e0-9]+/\1: BLANK/' said
     sed -e "s|$work/||g" -e 's/^/stderr: /' told

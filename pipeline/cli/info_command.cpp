@@ -69,8 +69,8 @@ settings::CommandText info_text() {
       .description =
           "Reads an OpenStreetMap extract and says what is in it: buildings and parts, how well they are tagged, "
           "streets and other objects, the extent, the coordinate system that a build would choose, and what time, "
-          "memory "
-          "and disk a build would take. Of facades it builds up to three tiles, which are not written, since they "
+          "memory and disk a build would take. Of facades it builds up to three tiles, which are not written, since "
+          "they "
           "differ much between towns. Writes nothing.\n"
           "The options on level of detail, formats and jobs are those of build: they say of which build the cost is "
           "told.",

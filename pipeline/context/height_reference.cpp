@@ -6,6 +6,7 @@
 
 #include "importers/elevation/terrain.h"
 #include "pipeline/base/error.h"
+#include "pipeline/base/toml_file.h"
 #include "pipeline/georef/transform.h"
 
 namespace blockrand::context {
@@ -93,8 +94,10 @@ AskedReference read_height_reference(const std::string& text) {
   const std::string number = lower.starts_with("epsg:") ? lower.substr(5) : std::string();
   const bool digits = !number.empty() && number.find_first_not_of("0123456789") == std::string::npos;
   const georef::VerticalCrs crs = digits ? georef::vertical_crs_of("EPSG:" + number) : georef::VerticalCrs{};
+  const std::string meant = base::nearest(lower, {"sea-level", "ellipsoid"});
   if (crs.name.empty() || crs.authority_code != "EPSG:" + number)
-    throw base::UsageError(fmt::format("{} {}: is no vertical coordinate system. Give {}", kOption, text, kChoices));
+    throw base::UsageError(fmt::format("{} {}: is no vertical coordinate system.{} Give {}", kOption, text,
+                                       meant.empty() ? "" : " Did you mean " + meant + "?", kChoices));
   if (crs.downwards)
     throw base::UsageError(fmt::format("{} {}: {} counts downwards. Give {}", kOption, text, crs.name, kChoices));
   asked.kind = Kind::vertical_crs;

@@ -236,7 +236,11 @@ void finish_outputs(const OpenOutputs& open, const Region& whole, const Account&
       .warn = [&](const std::string& text) { progress.warn(text); },
       .tell = [&](std::string_view path,
                   std::string figures) { record.summary.figures[std::string(path)] = std::move(figures); }};
-  for (const auto& output : open.list) output->finish(finished);
+  std::uint64_t ready = 0;
+  for (const auto& output : open.list) {
+    output->finish(finished);
+    progress.advance_to(++ready);
+  }
   for (const auto& output : open.list) output->conclude(finished);
   std::ranges::sort(record.files, {}, &base::PublishedFile::path);
   for (const base::PublishedFile& f : record.files) record.summary.bytes += f.bytes;
@@ -280,6 +284,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   BuildSummary& summary = record.summary;
 
   // Everything that can be refused without reading the extract is refused first.
+  progress.begin("check");
   if (!options.crs.empty()) georef::check_crs(options.crs);
   Place place(options, progress);
   base::StagedFolder& folder = place.folder;
@@ -439,7 +444,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   account.close(tile, shards, todo, summary);
   if (!options.measure) refuse_shrunk(options, summary, place.earlier);
 
-  progress.begin("documents");
+  progress.begin("documents", open.list.size() + 2);
   finish_outputs(open, sums.whole, account, record, progress);
   if (cache) tell_cache(*cache, options, summary, progress);
   folder.write("build.json", build_json(options, record));
