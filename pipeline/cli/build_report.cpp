@@ -70,7 +70,7 @@ std::string folder_of(const run::BuildOptions& options, const run::BuildSummary&
 }
 
 /// As a shell takes it.
-std::string quoted(const std::string& path) {
+std::string for_shell(const std::string& path) {
   if (!path.empty() &&
       path.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789/._-+,:@%") ==
           std::string::npos)
@@ -156,8 +156,8 @@ std::string build_report(const run::BuildOptions& options, const run::BuildSumma
   for (const auto& [path, what] : places) width = std::max(width, path.size());
   for (const auto& [path, what] : places) text += fmt::format("  {:<{}}  {}\n", path, width, what);
   if (options.outputs.explain)
-    text += fmt::format("why a building looks as it does: blockrand explain {} w123\n", quoted(folder));
-  return text + fmt::format("to look at it: blockrand view {}\n", quoted(folder));
+    text += fmt::format("why a building looks as it does: blockrand explain {} w123\n", for_shell(folder));
+  return text + fmt::format("to look at it: blockrand view {}\n", for_shell(folder));
 }
 
 std::string build_report_json(const run::BuildOptions& options, const run::BuildSummary& s) {
