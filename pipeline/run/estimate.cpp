@@ -182,10 +182,12 @@ BuildEstimate estimate(const TownSize& town, const BuildOptions& options, double
   e.seconds = kFixedSeconds + read_seconds + objects / (kObjectsPerSecondAndCore[level] * jobs);
   // What grows with the town and is not there when it has been read: walls' surroundings, facts, styles. Not in step with
   // it, since most of it is gone before the tiles.
-  constexpr double kPerRootOfObjects = 0.55e6, kFixed = 10e6, kFacades = 20e6, kPerWallInFlight = 150;
+  constexpr double kPerRootOfObjects = 0.55e6, kFixed = 10e6;
+  // Tiles in flight hold what becomes their facades, and the texts of it: a quarter of what it takes on the disk.
+  constexpr double kFacades = 10e6, kOfDisk = 0.25;
   const double in_flight = std::min(2.0 * jobs + 2, static_cast<double>(town.tiles));
   double memory = static_cast<double>(store_bytes) + kFixed + size.memory + kPerRootOfObjects * std::sqrt(objects);
-  if (options.lod >= 3) memory += kFacades + kPerWallInFlight * town.tile.walls * in_flight;
+  if (options.lod >= 3) memory += kFacades + kOfDisk * per_wall.value_or(size.per_wall) * town.tile.walls * in_flight;
   e.memory_bytes = static_cast<std::uint64_t>(memory);
   e.disk_bytes = disk_bytes(town.all, options, per_wall);
   return e;
