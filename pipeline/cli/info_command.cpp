@@ -50,7 +50,9 @@ int info(const settings::Settings& s, base::Progress& progress) {
   }
   if (s.build.lod >= 3) progress.begin("measure facades");
   const std::uint64_t store_bytes = run::peak_memory();
-  const std::optional<double> per_wall = run::sample_walls(extract, shards, summary.size, s.build, read_seconds);
+  run::BuildOptions build = s.build;
+  if (build.lod >= 3) build.configs = configs_folder(build.configs, program_file());
+  const std::optional<double> per_wall = run::sample_walls(extract, shards, summary.size, build, read_seconds);
   progress.end();
   const BuildEstimate cost = run::estimate(summary.size, s.build, read_seconds, store_bytes, per_wall);
   const bool json = s.json || s.log_format == base::LogFormat::json;
@@ -93,7 +95,6 @@ int run_info(const std::vector<std::string>& arguments) {
     return kSuccess;
   }
   settings::Settings& s = line.settings;
-  s.build.configs = configs_folder(s.build.configs, program_file());
   if (!s.build.crs.empty()) georef::check_crs(s.build.crs);
   expect_extract(s.build.input);
   base::Progress progress(s.progress, s.log_format, s.quiet);

@@ -55,7 +55,7 @@ TEST(BuildReport, SaysWhatBecameOfTheObjects) {
   EXPECT_THAT(text, ContainsRegex("duplicate +3 "));
   EXPECT_THAT(text, ContainsRegex("reported +100 "));
   EXPECT_THAT(text, ContainsRegex("LoD 2 +12,790\n  LoD 1 +8\n  LoD 0 +2\n"));
-  EXPECT_THAT(text, HasSubstr("\n2.00 s, peak memory 512.3 MB\n"));
+  EXPECT_THAT(text, HasSubstr("\n2.0 s, peak memory 512.3 MB\n"));
   EXPECT_THAT(text, HasSubstr("123.5 MB in 45 files"));
 }
 
