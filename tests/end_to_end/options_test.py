@@ -175,7 +175,7 @@ class Options(BuildTest):
     def test_printed_config_is_a_config(self):
         printed = blockrand('help', 'options', '--toml')
         self.assertEqual(printed.code, 0, printed)
-        self.same_files(self.build(SAMPLE, 'printed', '--config', self.place('all.toml', '--lod', '2', printed.out)), self.plain)
+        self.same_files(self.build(SAMPLE, 'printed', '--config', self.place('all.toml', printed.out), '--lod', '2'), self.plain)
 
     def test_force_replaces_a_build(self):
         out = self.build(SAMPLE, 'force', '--lod', '0')
