@@ -22,7 +22,8 @@ build/release/blockrand build samples/blockrand-viertel.osm -o out/quickstart --
 
 cat <<TEXT
 
-To look at it:
+To look at it: build/release/blockrand view out/quickstart
+Or:
   * drag out/quickstart/model.glb into any glTF viewer or editor (Blender, https://gltf-viewer.donmccurdy.com)
   * 3D Tiles: serve the folder (cd out/quickstart && python3 -m http.server) and load
     http://localhost:8000/tileset.json in CesiumJS or 3d-tiles-renderer

@@ -180,8 +180,8 @@ look() {
   "$program" "$@" >said 2>told </dev/null || code=$?
   {
     printf '$ blockrand %s\n' "$*"
-    sed -E -e '/ buildings and parts\/s, peak memory /d' -e 's/^[0-9.]+ [a-zA-Z]+ in ([0-9,]+ files:)$/SIZE in \1/' \
-      -e 's/^(A build would take about ).* of memory and/\1TIME, SIZE of memory and/' \
+    sed -E -e '/, peak memory /d' -e 's/^[0-9.]+ [a-zA-Z]+ in ([0-9,]+ files:)$/SIZE in \1/' \
+      -e 's/^(A build would take ).* of memory and/\1TIME, SIZE of memory and/' \
       -e '/^ "estimate"|^  "estimate"/,/}/s/("seconds"|"memory_bytes"): [-+.e0-9]+/\1: BLANK/' said
     sed -e "s|$work/||g" -e 's/^/stderr: /' told
     echo "exit code $code"
@@ -208,6 +208,7 @@ PY
 build() {
   target=$1
   shift
+  case " $* " in *" --lod "* | *" --config "*) ;; *) set -- "$@" --lod 2 ;; esac
   look "build_$target" build "$@" -o "builds/$target" --configs configs --progress none
   if [ "$last_code" -ne 0 ]; then
     echo "byte_equality: the build $target ended with exit code $last_code:" >&2

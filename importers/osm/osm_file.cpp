@@ -31,10 +31,25 @@ constexpr Kind kKinds[] = {{".osm.pbf", "pbf", "PBF"},
                            {".osm.bz2", "xml.bz2", "bzip2"},
                            {".osm", "xml", "XML"}};
 
+/// A file that was opened by another program or another part of this one has no name that says anything.
+bool has_no_name(const std::string& path) {
+  return path.starts_with("/proc/self/fd/") || path.starts_with("/dev/fd/") || path == "/dev/stdin";
+}
+
+constexpr std::string_view kO5m = "\xff\xe0\x04o5";
+constexpr const char* kConvert = "Convert it: osmium cat FILE.o5m -o FILE.osm.pbf";
+
 std::string format_by_name(const std::string& path) {
   std::string name = path;
   for (char& c : name)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  if (name.ends_with(".o5m")) throw base::InputError(path, "", "files of the format o5m are not read", kConvert);
+  for (const char* changes : {".osc", ".osc.gz", ".osc.bz2"})
+    if (name.ends_with(changes))
+      throw base::InputError(
+          path, "", "this is a change file by its name, not an extract",
+          "A region takes change files: blockrand update REGION FILE.osc.gz. Or apply it to an extract: "
+          "osmium apply-changes EXTRACT CHANGES -o NEW.osm.pbf");
   for (const Kind& kind : kKinds)
     if (name.ends_with(kind.suffix)) return std::string(kind.format);
   throw base::InputError(path, "", "the name does not say in which format the file is",
@@ -135,8 +150,9 @@ OsmFile::OsmFile(const std::string& path) : path_(path), workers_(std::make_uniq
   if (!fs::exists(status)) throw base::InputError(path, "", "there is no such file", "Check the path");
   if (fs::is_directory(status)) throw base::InputError(path, "", "this is a directory", "Name the OSM file itself");
   if (!fs::is_regular_file(status))
-    throw base::InputError(path, "", "this is not a regular file", "The file is read several times; save it first");
-  format_ = format_by_name(path);
+    throw base::InputError(path, "", "this is not a regular file",
+                           "The file is read several times: save it first, or pipe it in and name - as the extract");
+  if (!has_no_name(path)) format_ = format_by_name(path);
   file_name_ = fs::absolute(path).string();
 
   std::ifstream in(file_name_, std::ios::binary);
@@ -146,6 +162,14 @@ OsmFile::OsmFile(const std::string& path) : path_(path), workers_(std::make_uniq
   head.resize(static_cast<std::size_t>(in.gcount()));
   if (head.empty()) throw base::InputError(path, "", "the file is empty", "Fetch or write it again");
   const std::string content = format_by_content(head);
+  if (head.starts_with(kO5m)) throw base::InputError(path, "byte 0", "the content is o5m, which is not read", kConvert);
+  if (has_no_name(path)) {
+    if (content.empty())
+      throw base::InputError(path, "byte 0",
+                             "the content is no OSM data: neither PBF nor XML, nor that in gzip or bzip2",
+                             "Check what writes it; osmium needs the format: osmium cat IN.osm.pbf -f pbf -o -");
+    format_ = content;
+  }
   if (content != format_)
     throw base::InputError(path, "byte 0",
                            content.empty()

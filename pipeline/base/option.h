@@ -76,8 +76,10 @@ struct OptionDescription {
   OptionType type = OptionType::text;
   OptionSection section = kMainSection;
   unsigned commands = kBuild;
-  double minimum = 0, maximum = 0;     ///< of integers and numbers
-  std::string_view help{};             ///< one line, with the unit, without the default
+  double minimum = 0, maximum = 0;  ///< of integers and numbers
+  std::string_view help{};          ///< one line, with the unit, without the default
+  /// What --help of some commands says instead, where it means less or another thing to them: bits of Commands, one line.
+  std::vector<std::pair<unsigned, std::string_view>> help_of{};
   std::string_view without{};          ///< of a flag that is on by default: what --no-… leaves out; one line
   bool several = false;                ///< may be given more than once: each value is set in turn
   std::string_view if_missing{};       ///< what to say when it has no value; empty: it need not have one

@@ -18,6 +18,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kBarInterval = std::chrono::milliseconds(100);  // faster than this nobody reads
 constexpr auto kPlainInterval = std::chrono::seconds(5);       // a log of an hour stays below 1,000 lines
+constexpr auto kFirstInterval = std::chrono::seconds(2);       // of a phase that is not over at once
 constexpr auto kJsonInterval = std::chrono::seconds(1);
 constexpr int kBarCells = 16;
 
@@ -68,6 +69,7 @@ void Progress::advance_to(std::uint64_t done) {
   if (!running_ || style_ == ProgressStyle::none) return;
   const Clock::duration interval = style_ == ProgressStyle::bar ? Clock::duration(kBarInterval)
                                    : format_ == LogFormat::json ? Clock::duration(kJsonInterval)
+                                   : shown_ == started_         ? Clock::duration(kFirstInterval)
                                                                 : Clock::duration(kPlainInterval);
   const Clock::time_point now = Clock::now();
   if (now - shown_ < interval) return;

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cerrno>
 #include <charconv>
 #include <chrono>
@@ -225,6 +226,7 @@ struct StagedFile::State {
   std::string full_path, folder;
   PublishedFile file;
   Sha256 digest;
+  bool counts_only = false;
   int descriptor = -1;
 };
 
@@ -240,6 +242,7 @@ StagedFile::~StagedFile() {
 void StagedFile::append(std::string_view bytes) {
   state_->digest.add(bytes);
   state_->file.bytes += bytes.size();
+  if (state_->counts_only) return;
   const WriteGate gate;
   while (!bytes.empty()) {
     const ssize_t n = ::write(state_->descriptor, bytes.data(), bytes.size());
@@ -252,7 +255,7 @@ void StagedFile::append(std::string_view bytes) {
 
 PublishedFile StagedFile::close() {
   // Network file systems and quotas report a failed write here.
-  const int result = ::close(state_->descriptor);
+  const int result = state_->counts_only ? 0 : ::close(state_->descriptor);
   state_->descriptor = -1;
   if (result != 0 && errno != EINTR) throw output_error(state_->full_path, errno, state_->folder);
   state_->file.sha256 = state_->digest.finish();
@@ -265,7 +268,7 @@ StagedFolder::StagedFolder(std::string target, bool force, FolderKind kind)
     : target_(resolve_target(target)), force_(force), kind_(std::move(kind)) {
   if (abandon().ended) wait_for_the_end();
   const std::unique_lock gate(abandon().gate);
-  remove_stale();
+  if (!kind_.counts_only) remove_stale();
   try {
     check_target(target_, force, kind_);
   } catch (const UsageError& error) {
@@ -273,6 +276,21 @@ StagedFolder::StagedFolder(std::string target, bool force, FolderKind kind)
     for (const std::string& left : removed_) also += ". Removed what a run that died left: " + left;
     throw UsageError(error.what() + also);
   }
+  if (kind_.counts_only)
+    check_writable();
+  else
+    make_staging();
+}
+
+/// As far as that can be said without trying.
+void StagedFolder::check_writable() {
+  fs::path parent = fs::path(target_).parent_path();
+  while (!fs::exists(parent)) parent = parent.parent_path();
+  if (::access(parent.c_str(), W_OK | X_OK) != 0) throw_place_error(target_, errno);
+  staging_ = parent.string();
+}
+
+void StagedFolder::make_staging() {
   const auto undo = [this] {
     for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) ::rmdir(parent->c_str());
   };
@@ -305,6 +323,7 @@ StagedFolder::StagedFolder(std::string target, bool force, FolderKind kind)
 }
 
 StagedFolder::~StagedFolder() {
+  if (kind_.counts_only) return;
   if (abandon().ended) wait_for_the_end();
   const std::unique_lock gate(abandon().gate);
   auto& a = abandon();
@@ -354,6 +373,8 @@ StagedFile StagedFolder::create(const std::string& relative_path) {
   state->file.path = relative_path;
   state->full_path = staging_ + "/" + relative_path;
   state->folder = staging_;
+  state->counts_only = kind_.counts_only;
+  if (state->counts_only) return StagedFile(std::move(state));
   const WriteGate gate;
   std::error_code error;
   fs::create_directories(fs::path(state->full_path).parent_path(), error);
@@ -399,6 +420,7 @@ std::uint64_t StagedFolder::free_bytes() const {
 }
 
 std::string StagedFolder::publish() {
+  assert(!kind_.counts_only);
   std::string old;  // where the old build is now
   {
     if (abandon().ended) wait_for_the_end();

@@ -42,6 +42,8 @@ struct FolderKind {
   std::string name = "build", marker = "build.json";
   /// Files in an earlier one that the program did not write, relative to it. Empty: nobody looks.
   std::function<std::vector<std::string>(const std::string& folder)> foreign = {};
+  /// Nothing is written nor made, not even a parent: files are counted as if they were. Such a folder cannot be published.
+  bool counts_only = false;
 };
 
 /// A folder in the making. Files go to a staging folder `.<name>.part-<pid>` beside the target; publish() swaps it in.
@@ -100,6 +102,9 @@ class StagedFolder {
 
  private:
   void remove_stale();
+
+  void make_staging();
+  void check_writable();
 
   std::string target_, staging_;
   std::vector<std::string> made_parents_;  ///< outermost first

@@ -69,6 +69,17 @@ std::string folder_of(const run::BuildOptions& options, const run::BuildSummary&
   return s.folder.empty() ? options.output : s.folder;
 }
 
+/// As a shell takes it.
+std::string for_shell(const std::string& path) {
+  if (!path.empty() &&
+      path.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789/._-+,:@%") ==
+          std::string::npos)
+    return path;
+  std::string out = "'";
+  for (const char c : path) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
 double rate(const run::BuildSummary& s) {
   return s.seconds > 0 ? static_cast<double>(s.buildings_in + s.parts_in) / s.seconds : 0;
 }
@@ -91,7 +102,7 @@ std::string unaccounted_text(const run::BuildOptions& options, const run::BuildS
                                  : "The earlier build stays as it was, the new one lies in " + s.folder + ".");
 }
 
-std::string build_report(const run::BuildOptions& options, const run::BuildSummary& s) {
+std::string build_report(const run::BuildOptions& options, const run::BuildSummary& s, bool verbose) {
   const std::string folder = folder_of(options, s);
   std::string text = "Objects\n";
   text += row("in", s.buildings_in + s.parts_in,
@@ -104,16 +115,21 @@ std::string build_report(const run::BuildOptions& options, const run::BuildSumma
   for (std::size_t lod = s.models_by_lod.size(); lod-- > 0;)
     if (static_cast<int>(lod) <= options.lod || s.models_by_lod[lod] > 0)
       text += row(fmt::format("LoD {}", lod), s.models_by_lod[lod], "");
-  text += roofscape_rows(s.roofscape);
+  if (verbose) text += roofscape_rows(s.roofscape);
   text += code_rows(s, IssueClass::reported, "Not modelled, because");
   text += code_rows(s, IssueClass::fallback, "Simpler than asked");
   text += code_rows(s, IssueClass::notice, "Notices");
-  text += fmt::format("\n{}, {} buildings and parts/s, peak memory {}", base::with_time_unit(s.seconds),
-                      with_thousands(static_cast<std::uint64_t>(rate(s))), with_byte_unit(s.peak_rss_bytes));
-  text +=
-      s.areas > 0
-          ? fmt::format(" of one area; the extract took {} on disk meanwhile\n", with_byte_unit(s.store_bytes))
-          : fmt::format(" ({} store, the rest {} tiles in flight)\n", with_byte_unit(s.store_bytes), s.tiles_in_flight);
+  text += fmt::format("\n{}, peak memory {}", base::with_time_unit(s.seconds), with_byte_unit(s.peak_rss_bytes));
+  text += s.areas > 0
+              ? fmt::format(" of one area; the extract took {} on disk meanwhile\n", with_byte_unit(s.store_bytes))
+              : "\n";
+  if (verbose) {
+    text += fmt::format("{} buildings and parts/s", with_thousands(static_cast<std::uint64_t>(rate(s))));
+    if (s.areas == 0)
+      text += fmt::format("; of the memory {} store, the rest {} tiles in flight", with_byte_unit(s.store_bytes),
+                          s.tiles_in_flight);
+    text += "\n";
+  }
   text += fmt::format("{} in {} files:\n", with_byte_unit(s.bytes), with_thousands(s.files));
   std::vector<std::pair<std::string, std::string>> places;
   const auto place = [&](std::string_view name, std::string_view what) {
@@ -140,8 +156,8 @@ std::string build_report(const run::BuildOptions& options, const run::BuildSumma
   for (const auto& [path, what] : places) width = std::max(width, path.size());
   for (const auto& [path, what] : places) text += fmt::format("  {:<{}}  {}\n", path, width, what);
   if (options.outputs.explain)
-    text += fmt::format("  why a building looks as it does: blockrand explain {} w123\n", folder);
-  return text;
+    text += fmt::format("why a building looks as it does: blockrand explain {} w123\n", for_shell(folder));
+  return text + fmt::format("to look at it: blockrand view {}\n", for_shell(folder));
 }
 
 std::string build_report_json(const run::BuildOptions& options, const run::BuildSummary& s) {

@@ -9,7 +9,8 @@ namespace blockrand::cli {
 
 /// A table for people: objects in and what became of them, models by level of detail, coded reasons, speed, size, and
 /// where the result is. Ends with a line break.
-std::string build_report(const run::BuildOptions& options, const run::BuildSummary& summary);
+/// \param verbose  gauges for developers as well: the object store, tiles in flight, how roofs stand in their rows
+std::string build_report(const run::BuildOptions& options, const run::BuildSummary& summary, bool verbose = false);
 
 /// The same as one line of JSON.
 std::string build_report_json(const run::BuildOptions& options, const run::BuildSummary& summary);

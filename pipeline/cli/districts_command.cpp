@@ -18,8 +18,11 @@
 #include "pipeline/base/text.h"
 #include "pipeline/cli/configs_folder.h"
 #include "pipeline/cli/exit_codes.h"
+#include "pipeline/cli/path_kinds.h"
 #include "pipeline/cli/signals.h"
+#include "pipeline/cli/spooled_input.h"
 #include "pipeline/cli/staged_file.h"
+#include "pipeline/georef/crs.h"
 #include "pipeline/run/district_survey.h"
 #include "pipeline/run/output_place.h"
 #include "pipeline/settings/command_line.h"
@@ -236,9 +239,28 @@ int run_districts(const std::vector<std::string>& arguments) {
     return kSuccess;
   }
   Settings& s = line.settings;
+  const std::vector<std::string_view> both = {"show", "diff"};
+  settings::refuse_unread(line, settings::kDistricts, s.action,
+                          {{"bbox", both},
+                           {"crs", both},
+                           {"overrides", both},
+                           {"seed", both},
+                           {"jobs", both},
+                           {"output", both},
+                           {"force", both},
+                           {"districts", {"show"}},
+                           {"by", {"show"}}});
   s.build.configs = configs_folder(s.build.configs, program_file());
   if (s.action == "check") return check(s);
-  return s.action == "show" ? show(s) : diff(s);
+  if (!s.build.crs.empty()) georef::check_crs(s.build.crs);
+  const std::size_t extract = s.action == "show" ? 0 : 2;
+  if (s.files.size() <= extract) return s.action == "show" ? show(s) : diff(s);  // they say what is missing
+  expect_extract(s.files[extract]);
+  base::Progress progress(s.progress, s.log_format, s.quiet);
+  const std::optional<SpooledInput> piped = take_standard_input(s.files[extract], s.build.output, progress);
+  progress.end();
+  if (piped) s.build.input_told = kStandardInput;
+  return with_input_told(piped, [&] { return s.action == "show" ? show(s) : diff(s); });
 }
 
 }  // namespace blockrand::cli

@@ -14,6 +14,7 @@
 #include "pipeline/cli/exit_codes.h"
 #include "pipeline/cli/explain_chip.h"
 #include "pipeline/cli/explain_style.h"
+#include "pipeline/cli/path_kinds.h"
 #include "pipeline/cli/terminal_text.h"
 #include "pipeline/outputs/explain/find_places.h"
 #include "pipeline/outputs/explain/plain_explanation.h"
@@ -453,6 +454,7 @@ int run_explain(const std::vector<std::string>& arguments) {
     id = id_by_address(s.folder, s.id);
     if (!id) return kInvalidInput;
   }
+  expect_build(s.folder);
   const auto found = outputs::find_explanation(s.folder, *id);
   if (!found)
     throw base::InputError(s.folder, "", "knows no building or building part " + id->text(),

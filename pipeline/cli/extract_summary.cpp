@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
 
-#include "pipeline/base/parallel.h"
 #include "pipeline/base/text.h"
+#include "pipeline/cli/plan_report.h"
 #include "pipeline/footprints/shard.h"
 #include "pipeline/model/osm_keys.h"
-#include "pipeline/outputs/output.h"
 
 namespace blockrand::cli {
 namespace {
@@ -140,7 +140,7 @@ std::string codes_text(const std::string& title, const std::map<std::string, std
 
 }  // namespace
 
-ExtractSummary summarise(const model::Extract& extract) {
+ExtractSummary summarise(const model::Extract& extract, std::vector<footprints::Shard>* shards) {
   ExtractSummary s;
   s.file = extract.file;
   s.data_time = extract.data_time;
@@ -181,23 +181,10 @@ ExtractSummary summarise(const model::Extract& extract) {
 
   locate(extract, s);
   model::Report unused;
-  s.tiles = footprints::make_shards(extract, unused).size();
+  std::vector<footprints::Shard> all = footprints::make_shards(extract, unused);
+  s.size = run::town_size(extract, all);
+  if (shards != nullptr) *shards = std::move(all);
   return s;
-}
-
-BuildEstimate estimate(const ExtractSummary& summary, const run::BuildOptions& options, double read_seconds,
-                       std::uint64_t store_bytes) {
-  // Measured on Monaco, Helsinki, Liechtenstein and Berlin; right within a factor of two on other machines and towns.
-  constexpr double kObjectsPerSecondAndCore[3] = {20'000, 8'000, 2'500};
-  constexpr double kFixedSeconds = 0.2, kFixedBytes = 5e6, kBytesPerJob = 10e6;
-  const auto lod = static_cast<std::size_t>(std::clamp(options.lod, 0, 2));  // facades were not measured yet
-  const double objects = static_cast<double>(summary.to_build);
-  const int jobs = base::worker_count(options.jobs);
-  BuildEstimate e;
-  e.seconds = kFixedSeconds + read_seconds + objects / (kObjectsPerSecondAndCore[lod] * jobs);
-  e.memory_bytes = static_cast<std::uint64_t>(static_cast<double>(store_bytes) + kFixedBytes + kBytesPerJob * jobs);
-  e.disk_bytes = static_cast<std::uint64_t>(objects * outputs::bytes_per_building(options.outputs, options.lod));
-  return e;
 }
 
 std::string summary_text(const ExtractSummary& s, const std::optional<CrsChoice>& crs, const BuildEstimate& e) {
@@ -235,11 +222,11 @@ std::string summary_text(const ExtractSummary& s, const std::optional<CrsChoice>
   if (!features.empty()) text += "\nOther objects\n" + features;
   if (!s.extent) return text + "\nNo building with an outline: a build would be empty.\n";
   text += fmt::format("\nExtent  {:.5f},{:.5f},{:.5f},{:.5f} (west,south,east,north), {} tiles\n", s.extent->west,
-                      s.extent->south, s.extent->east, s.extent->north, with_thousands(s.tiles));
+                      s.extent->south, s.extent->east, s.extent->north, with_thousands(s.size.tiles));
   if (crs)
     text += fmt::format("CRS     {} {} ({}{})\n", crs->code, crs->name, crs->operation,
                         crs->accuracy_m > 0 ? fmt::format(", accuracy {:.1f} m", crs->accuracy_m) : "");
-  text += fmt::format("A build would take about {}, {} of memory and {} of disk\n", base::with_time_unit(e.seconds),
+  text += fmt::format("A build would take {}, about {} of memory and about {} of disk\n", rough_time(e.seconds),
                       with_byte_unit(e.memory_bytes), with_byte_unit(e.disk_bytes));
   return text;
 }
@@ -283,7 +270,9 @@ std::string summary_json(const ExtractSummary& s, const std::optional<CrsChoice>
                         {"operation", crs->operation},
                         {"accuracy_m", crs->accuracy_m}}
                  : Json();
-  j["tiles"] = s.tiles;
+  j["tiles"] = s.size.tiles;
+  j["outer_walls_m2"] = std::round(s.size.all.walls);
+  j["outer_walls_of_the_largest_tile_m2"] = std::round(s.size.tile.walls);
   j["estimate"] = {{"seconds", e.seconds}, {"memory_bytes", e.memory_bytes}, {"disk_bytes", e.disk_bytes}};
   // Tags may hold anything; JSON may not.
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -10,7 +10,7 @@
 
 #include "pipeline/georef/lon_lat.h"
 #include "pipeline/model/extract.h"
-#include "pipeline/run/build.h"
+#include "pipeline/run/estimate.h"
 
 namespace blockrand::cli {
 
@@ -35,22 +35,14 @@ struct ExtractSummary {
   std::vector<Frequency> features;                                   ///< by kind, in the order of the model
   std::optional<georef::GeoBox> extent;                              ///< of the centres of all outlines
   std::optional<georef::LonLat> centre;  ///< medians of the outlines' centres: what the CRS is chosen for
-  std::uint64_t tiles = 0;               ///< that hold a building
+  run::TownSize size;                    ///< what decides how much a build takes
 };
 
 /// Counts. Only what the extract itself says; `file_bytes` stays 0.
-ExtractSummary summarise(const model::Extract& extract);
+/// \param shards  become those of the extract; null: not wanted
+ExtractSummary summarise(const model::Extract& extract, std::vector<footprints::Shard>* shards = nullptr);
 
-/// What a build would take.
-struct BuildEstimate {
-  double seconds = 0;
-  std::uint64_t memory_bytes = 0, disk_bytes = 0;
-};
-
-/// \param read_seconds  what reading the extract took here
-/// \param store_bytes   memory of this process after reading it
-BuildEstimate estimate(const ExtractSummary& summary, const run::BuildOptions& options, double read_seconds,
-                       std::uint64_t store_bytes);
+using run::BuildEstimate;
 
 /// The coordinate system that a build would have.
 struct CrsChoice {

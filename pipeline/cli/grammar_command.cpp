@@ -171,6 +171,15 @@ int run_grammar(const std::vector<std::string>& arguments) {
     std::fputs(settings::command_help(grammar_text()).c_str(), stdout);
     return kSuccess;
   }
+  settings::refuse_unread(line, settings::kGrammar, line.settings.task,
+                          {{"lot", {"run"}},
+                           {"storeys", {"run"}},
+                           {"attr", {"run"}},
+                           {"rule", {"run"}},
+                           {"tree", {"run"}},
+                           {"seed", {"run"}},
+                           {"output", {"run", "import"}},
+                           {"force", {"run", "import"}}});
   for (const Task& task : kTasks)
     if (line.settings.task == task.name) return task.run(line.settings);
   return kWrongUsage;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <string>
@@ -93,6 +94,8 @@ int run_grammar_run(const settings::Settings& s) {
   double width = 0, depth = 0;
   if (!grammar::read_lot(s.rule_lot, width, depth))
     throw base::UsageError(fmt::format("--lot needs metres such as 20x12, not '{}'", s.rule_lot));
+  if (std::error_code none; !s.build.output.empty() && std::filesystem::exists(s.build.output, none) && !s.build.force)
+    throw base::UsageError(s.build.output + " exists already. Choose another file with -o, or --force");
   const std::string& file = s.rule_files[0];
   const grammar::Program program = grammar::load(file, rule_load_options(s, file));
   std::size_t errors = print_diagnostics(program.diagnostics, program, false);

@@ -20,6 +20,13 @@
 namespace blockrand::cli {
 namespace {
 
+/// What one code means; empty where there is none of that name.
+std::string code_text(const std::string& code) {
+  for (const model::IssueInfo& info : model::kIssueInfo)
+    if (info.text == code && code != "NONE") return fmt::format("{}: {}\n", info.text, info.meaning);
+  return {};
+}
+
 std::string codes_text() {
   std::string text;
   for (const auto& [issue_class, title] : {std::pair{model::IssueClass::reported, "Not modelled, because"},
@@ -85,7 +92,7 @@ settings::CommandText help_text() {
       .topics = {{"options",
                   "the reference of all options; --toml: a config file with all of them and their defaults",
                   {"--markdown", "--toml"}},
-                 {"codes", "the reasons that reports give, and what they mean"},
+                 {"codes", "the reasons that reports give, and what they mean; help CODE: one of them"},
                  {"man", "this program's manual page; to read it: blockrand help man | man -l -"},
                  {"completion", "a script that completes commands and options in a shell",
                   settings::completion_shells(), true}},
@@ -135,8 +142,10 @@ int run_help(const std::vector<std::string>& arguments) {
   if (!forms.empty() && (form.empty() ? entry->form_needed : std::ranges::find(forms, form) == forms.end())) {
     std::string known;
     for (const std::string& f : forms) known += (known.empty() ? "" : ", ") + f;
+    const std::string near = base::nearest(form, forms);
     throw base::UsageError(form.empty() ? fmt::format("help {}: of which? Known: {}.", topic, known)
-                                        : fmt::format("help {}: unknown {}. Known: {}.", topic, form, known));
+                                        : fmt::format("help {}: unknown {}.{} Known: {}.", topic, form,
+                                                      near.empty() ? "" : " Did you mean " + near + "?", known));
   }
   std::string text;
   if (topic.empty()) {
@@ -151,12 +160,15 @@ int run_help(const std::vector<std::string>& arguments) {
     text = manual_text();
   } else if (topic == "completion") {
     text = settings::completion(form, command_texts());
-  } else {
+  } else if (text = code_text(topic); text.empty()) {
     std::vector<std::string> known;
+    for (const model::IssueInfo& info : model::kIssueInfo) known.emplace_back(info.text);
     for (const settings::CommandText& command : command_texts()) known.push_back(command.name);
     for (const settings::Topic& t : self.topics) known.push_back(t.name);
     const std::string near = base::nearest(topic, known);
-    throw base::UsageError("no help on " + topic + "." + (near.empty() ? "" : " Did you mean " + near + "?"));
+    throw base::UsageError("no help on " + topic + "." +
+                           (near.empty() ? " Topics: the commands, options, codes, man, completion, and each code."
+                                         : " Did you mean " + near + "?"));
   }
   std::fputs(text.c_str(), stdout);
   return kSuccess;

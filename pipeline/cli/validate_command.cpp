@@ -4,6 +4,8 @@
 
 #include "pipeline/base/progress.h"
 #include "pipeline/cli/exit_codes.h"
+#include "pipeline/cli/path_kinds.h"
+#include "pipeline/cli/spooled_input.h"
 #include "pipeline/settings/command_line.h"
 #include "pipeline/validate/validate_build.h"
 
@@ -31,17 +33,19 @@ settings::CommandText validate_text() {
 }
 
 int run_validate(const std::vector<std::string>& arguments) {
-  const settings::CommandLine line = settings::read_command_line(settings::kValidate, arguments);
+  settings::CommandLine line = settings::read_command_line(settings::kValidate, arguments);
   if (line.help) {
     std::fputs(settings::command_help(validate_text()).c_str(), stdout);
     return kSuccess;
   }
-  const settings::Settings& s = line.settings;
+  settings::Settings& s = line.settings;
+  expect_build(s.folder);
   base::Progress progress(s.progress, s.log_format, s.quiet);
   validate::ValidateOptions options = s.validation;
   options.folder = s.folder;
   options.jobs = s.build.jobs;
-  const validate::Validation validation = validate::validate(options, progress);
+  const std::optional<SpooledInput> piped = take_standard_input(options.extract, "", progress);
+  const validate::Validation validation = with_input_told(piped, [&] { return validate::validate(options, progress); });
   const bool json = s.json || s.log_format == base::LogFormat::json;
   if (s.quiet && !json && validation.sound()) return kSuccess;
   std::fputs((json ? validation_json(options, validation) : validation_text(options, validation)).c_str(), stdout);

@@ -195,19 +195,21 @@ context::CellIndex cell_of_building(const footprints::FootprintStore& footprints
 ContextExtract context_extract(const Extract& extract, const footprints::FootprintStore& footprints,
                                std::span<const Point2> coverage, const georef::Projection& projection, int workers,
                                base::Progress& progress, const context::UseOfTags& use_of, const base::Memo* memo) {
-  progress.begin("context");
+  progress.begin("context", 4);
   ContextExtract out;
   const context::Project project = [&](model::Location l) { return projection.forward(l); };
   out.lines = context::network_lines(extract, project);
   out.passages = context::passage_ways(extract, project);
   out.points = context::site_points(extract, project, use_of);
   out.blocks = context::find_blocks(out.lines, coverage);
+  progress.advance_to(1);
   out.block_of.assign(footprints.size(), model::kNoIndex);
   std::vector<geometry::PlanBox> line_boxes;
   for (const NetworkLine& line : out.lines) line_boxes.push_back(geometry::box_of(line.points));
   const geometry::BoxIndex lines(std::move(line_boxes));
   const geometry::BoxIndex index = footprints::index_of(footprints);
   measure_all(extract, footprints, index, lines, workers, memo, out);
+  progress.advance_to(3);
   find_loose_courtyards(extract, footprints, lines, workers, out);
   // A building that stands in two blocks has its courtyards in both: the one of the lower id keeps them.
   const auto key = [&](const ExtractCourtyard& yard) {

@@ -6,6 +6,7 @@
 
 #include "importers/elevation/terrain.h"
 #include "pipeline/base/error.h"
+#include "pipeline/base/toml_file.h"
 #include "pipeline/georef/transform.h"
 
 namespace blockrand::context {
@@ -54,6 +55,29 @@ std::string in_words(const AskedReference& reference) {
 
 }  // namespace
 
+std::string ground_warning(const georef::LonLat& place) {
+  const std::string begin = "no --terrain and no --ground-height: ", end = ". Give --ground-height or --terrain";
+  const std::string unknown = "how high the ground itself is, nothing says";
+  const std::optional<double> sea = georef::Geoid().undulation(place.lon, place.lat);
+  if (!sea)
+    return begin + "on a globe (3D Tiles) houses will stand at height 0 of the ellipsoid, not on the ground" + end;
+  if (*sea >= 0.5)
+    return begin +
+           fmt::format(
+               "on a globe (3D Tiles) houses will lie {:.0f} m below the sea level of the place, so at least that "
+               "far below land above the sea; {}",
+               *sea, unknown) +
+           end;
+  if (*sea <= -0.5)
+    return begin +
+           fmt::format(
+               "on a globe (3D Tiles) houses will lie {:.0f} m above the sea level of the place: above lower ground, "
+               "within higher ground; {}",
+               -*sea, unknown) +
+           end;
+  return begin + "on a globe (3D Tiles) houses will lie at the sea level of the place; " + unknown + end;
+}
+
 AskedReference read_height_reference(const std::string& text) {
   AskedReference asked;
   if (text.empty()) return asked;
@@ -70,8 +94,10 @@ AskedReference read_height_reference(const std::string& text) {
   const std::string number = lower.starts_with("epsg:") ? lower.substr(5) : std::string();
   const bool digits = !number.empty() && number.find_first_not_of("0123456789") == std::string::npos;
   const georef::VerticalCrs crs = digits ? georef::vertical_crs_of("EPSG:" + number) : georef::VerticalCrs{};
+  const std::string meant = base::nearest(lower, {"sea-level", "ellipsoid"});
   if (crs.name.empty() || crs.authority_code != "EPSG:" + number)
-    throw base::UsageError(fmt::format("{} {}: is no vertical coordinate system. Give {}", kOption, text, kChoices));
+    throw base::UsageError(fmt::format("{} {}: is no vertical coordinate system.{} Give {}", kOption, text,
+                                       meant.empty() ? "" : " Did you mean " + meant + "?", kChoices));
   if (crs.downwards)
     throw base::UsageError(fmt::format("{} {}: {} counts downwards. Give {}", kOption, text, crs.name, kChoices));
   asked.kind = Kind::vertical_crs;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/georef/heights.h"
+#include "pipeline/georef/lon_lat.h"
 
 namespace blockrand::importers::elevation {
 struct TerrainDescription;
@@ -21,6 +22,10 @@ struct AskedReference {
   std::optional<double> metres_per_unit;     ///< of vertical_crs
 };
 AskedReference read_height_reference(const std::string& text);
+
+/// What it means for people that nothing says how high the ground is: by how much the model will lie wrong on a globe, as
+/// far as the geoid tells. \param place  degrees; the middle of the build
+std::string ground_warning(const georef::LonLat& place);
 
 /// What z means in all outputs.
 struct HeightReference {

@@ -344,8 +344,8 @@ FactsExtract facts_extract(const model::Extract& extract, const footprints::Foot
                            std::span<const std::uint32_t> first, const context::ContextExtract& context,
                            const context::VicinityFinder& vicinity, int workers, base::Progress& progress,
                            const base::Memo* memo, const Needed& needed) {
-  progress.begin("measure");
   const std::size_t count = store.size();
+  progress.begin("measure", 2 * count);  // alone, then with what stands around
   FactsExtract facts;
   facts.features.resize(count);
   facts.places.resize(count);
@@ -404,6 +404,7 @@ FactsExtract facts_extract(const model::Extract& extract, const footprints::Foot
       facts.features[b] = own.features;
     }
     slots[i % in_flight].clear();
+    progress.advance_to(starts[i + 1]);
   };
   base::ordered_parallel(runs, workers, in_flight, look, keep);
 
@@ -426,7 +427,8 @@ FactsExtract facts_extract(const model::Extract& extract, const footprints::Foot
         [&] { return measured_around(inputs, starts[i], starts[i + 1]); });
     std::copy(run.begin(), run.end(), out.begin() + static_cast<std::ptrdiff_t>(starts[i]));
   };
-  base::ordered_parallel(runs, workers, in_flight, around, [](std::size_t) {});
+  base::ordered_parallel(runs, workers, in_flight, around,
+                         [&](std::size_t i) { progress.advance_to(count + starts[i + 1]); });
   facts.features = std::move(out);
   measure_blocks(context, facts);
   measure_town(context, facts);

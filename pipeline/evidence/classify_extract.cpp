@@ -524,7 +524,7 @@ Needed needed_for(std::span<const std::uint32_t> asked, const footprints::Footpr
 StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, const classify::Tables& tables,
                               const PriorOf& prior, const ClassifyOptions& options, int workers,
                               base::Progress& progress, const Needed& needed) {
-  progress.begin("classify");
+  progress.begin("classify", 4);
   Classifier classifier{.facts = facts,
                         .tags = tags,
                         .tables = tables,
@@ -539,8 +539,11 @@ StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, c
   out.elsewhere.assign(classifier.n, {});
   out.region.assign(classifier.n, {});
   classifier.eras_and_styles();
+  progress.advance_to(1);
   classifier.quarters();
+  progress.advance_to(2);
   if (options.smooth) classifier.smooth_styles();
+  progress.advance_to(3);
   classifier.storeys_and_roofs();
   return std::move(out);
 }

@@ -33,10 +33,13 @@ int utm_zone(double lon, double lat) {
   return zone;
 }
 
-[[noreturn]] void refuse(const std::string& code, const std::string& why, const GeoBox& extent) {
-  const LonLat c = extent.centre();
-  throw base::UsageError("--crs " + code + " " + why + ". Use a projected system in metres, for example " +
-                         choose_crs(c.lon, c.lat) + ", or leave --crs out");
+/// \param extent  null: nobody knows yet
+[[noreturn]] void refuse(const std::string& code, const std::string& why, const GeoBox* extent) {
+  throw base::UsageError(
+      "--crs " + code + " " + why + ". Use a projected system in metres, " +
+      (extent != nullptr ? "for example " + choose_crs(extent->centre().lon, extent->centre().lat) + ", or"
+                         : std::string("such as a UTM zone, or")) +
+      " leave --crs out" + (extent != nullptr ? "" : ": the UTM zone of the extract is chosen then"));
 }
 
 /// "EPSG:25833" from what the user wrote; empty when it is no EPSG code.
@@ -52,25 +55,8 @@ std::string normal_code(std::string_view text) {
   return digits ? std::string(kAuthority) + std::string(text) : std::string();
 }
 
-}  // namespace
-
-bool in_etrs89_europe(double lon, double lat) {
-  bool inside = false;
-  for (std::size_t i = 0, j = kEurope.size() - 1; i < kEurope.size(); j = i++) {
-    const LonLat a = kEurope[i], b = kEurope[j];
-    if ((a.lat > lat) == (b.lat > lat)) continue;
-    if (lon < a.lon + (lat - a.lat) / (b.lat - a.lat) * (b.lon - a.lon)) inside = !inside;
-  }
-  return inside;
-}
-
-std::string choose_crs(double lon, double lat) {
-  const int zone = utm_zone(lon, lat);
-  if (in_etrs89_europe(lon, lat) && zone >= 28 && zone <= 38) return "EPSG:" + std::to_string(25800 + zone);
-  return "EPSG:" + std::to_string((lat < 0 ? 32700 : 32600) + zone);
-}
-
-Crs open_crs(const std::string& code, const GeoBox& extent) {
+/// Code and name of a CRS that a build can have. \param extent  for messages; null: nobody knows yet
+Crs named_crs(const std::string& code, const GeoBox* extent) {
   Crs crs;
   crs.authority_code = normal_code(code);
   if (crs.authority_code.empty()) refuse(code, "is not an EPSG code", extent);
@@ -103,6 +89,32 @@ Crs open_crs(const std::string& code, const GeoBox& extent) {
   if (directions != "east north " && directions != "north east ") {
     refuse(code, named + "does not count to the east and north (its axes: " + directions + ")", extent);
   }
+  return crs;
+}
+
+}  // namespace
+
+bool in_etrs89_europe(double lon, double lat) {
+  bool inside = false;
+  for (std::size_t i = 0, j = kEurope.size() - 1; i < kEurope.size(); j = i++) {
+    const LonLat a = kEurope[i], b = kEurope[j];
+    if ((a.lat > lat) == (b.lat > lat)) continue;
+    if (lon < a.lon + (lat - a.lat) / (b.lat - a.lat) * (b.lon - a.lon)) inside = !inside;
+  }
+  return inside;
+}
+
+std::string choose_crs(double lon, double lat) {
+  const int zone = utm_zone(lon, lat);
+  if (in_etrs89_europe(lon, lat) && zone >= 28 && zone <= 38) return "EPSG:" + std::to_string(25800 + zone);
+  return "EPSG:" + std::to_string((lat < 0 ? 32700 : 32600) + zone);
+}
+
+void check_crs(const std::string& code) { named_crs(code, nullptr); }
+
+Crs open_crs(const std::string& code, const GeoBox& extent) {
+  Crs crs = named_crs(code, &extent);
+  const std::string named = "(" + crs.name + ") ";
   try {
     const Transform transform("EPSG:4326", crs.authority_code, extent);
     crs.operation = transform.operation();
@@ -110,7 +122,7 @@ Crs open_crs(const std::string& code, const GeoBox& extent) {
     crs.pipeline = transform.pipeline();
     const LonLat centre = extent.centre();
     const model::Point2 p = transform.forward({centre.lon, centre.lat});
-    if (!std::isfinite(p.x) || !std::isfinite(p.y)) refuse(code, named + "is not defined where the data lies", extent);
+    if (!std::isfinite(p.x) || !std::isfinite(p.y)) refuse(code, named + "is not defined where the data lies", &extent);
   } catch (const base::UsageError& error) {
     if (std::string_view(error.what()).starts_with("--crs")) throw;
     throw base::UsageError("--crs " + code + " " + named + "cannot be used: " + error.what());

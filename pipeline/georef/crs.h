@@ -28,6 +28,11 @@ std::string choose_crs(double lon, double lat);
 /// Whether choose_crs counts the place as Europe.
 bool in_etrs89_europe(double lon, double lat);
 
+/// What of open_crs can be said before anybody knows where the build lies.
+///
+/// \throws base::UsageError  it is no EPSG code, unknown, not projected, not in metres, or not counted east and north
+void check_crs(const std::string& code);
+
 /// Reads `--crs`: "EPSG:25833", "epsg:25833" or "25833".
 ///
 /// \param extent  where the build lies, degrees: chooses among PROJ's operations

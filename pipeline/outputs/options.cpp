@@ -194,6 +194,10 @@ bool OutputOptions::writes(std::string_view format) const {
   return std::ranges::find(formats, format) != formats.end();
 }
 
-base::OptionTable<OutputOptions> output_options() { return base::concatenated({which_files(), what_files_hold()}); }
+base::OptionTable<OutputOptions> output_options() {
+  base::OptionTable<OutputOptions> table = base::concatenated({which_files(), what_files_hold()});
+  for (base::Option<OutputOptions>& option : table) option.commands |= base::kInfo;  // it tells what they cost
+  return table;
+}
 
 }  // namespace blockrand::outputs

@@ -9,12 +9,12 @@
 
 namespace blockrand::outputs {
 
-double bytes_per_building(const OutputOptions& options, int lod) {
+OutputSize output_size(const OutputOptions& options, int lod) {
   const auto level = static_cast<std::size_t>(std::clamp(lod, 0, 3));
-  double each = 0;
+  OutputSize all;
   for (const OutputFormat& format : all_outputs())
-    if (format.asked(options)) each += format.bytes_per_building(options, level);
-  return each;
+    if (format.asked(options)) all += format.size(options, level);
+  return all;
 }
 
 std::string attribution(const OutputContext& context) {

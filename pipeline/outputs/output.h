@@ -30,6 +30,7 @@
 #include "pipeline/outputs/imagery/seen_outline.h"
 #include "pipeline/outputs/object_counts.h"
 #include "pipeline/outputs/options.h"
+#include "pipeline/outputs/output_size.h"
 #include "pipeline/outputs/statistics.h"
 
 namespace blockrand::outputs {
@@ -133,8 +134,8 @@ struct OutputFormat {
   std::vector<std::pair<std::string_view, std::string_view>> manual{};  ///< path and text for the manual page
   /// One of its files is asked for.
   bool (*asked)(const OutputOptions& options) = nullptr;
-  /// Bytes that a building takes on the disk, roughly, from builds of whole cities. \param lod  0 to 3
-  double (*bytes_per_building)(const OutputOptions& options, std::size_t lod) = nullptr;
+  /// What its files take. \param lod  0 to 3
+  OutputSize (*size)(const OutputOptions& options, std::size_t lod) = nullptr;
   /// `take` gets regions: all stay in memory until their turn.
   bool (*takes_regions)(const OutputOptions& options) = nullptr;  ///< null: never
   /// `finish` gets the whole build as one region, in memory.
@@ -146,8 +147,8 @@ struct OutputFormat {
 /// options, help, manual, disk estimate and the build itself follow from it (all_outputs.cpp).
 const std::vector<OutputFormat>& all_outputs();
 
-/// Bytes on the disk, all asked formats together. \param lod  clamped to 0 to 3
-double bytes_per_building(const OutputOptions& options, int lod);
+/// All asked formats together. \param lod  clamped to 0 to 3
+OutputSize output_size(const OutputOptions& options, int lod);
 
 // ---- What several formats say alike.
 

@@ -183,7 +183,7 @@ RegionSurvey survey_region(const importers::osm::ExtractStore& store, const Buil
       options.crs.empty() || !area ? georef::choose_crs(survey.facts.centre.lon, survey.facts.centre.lat) : options.crs;
   const georef::Crs crs = georef::open_crs(survey.facts.crs, survey.facts.box);
   survey.facts.coverage = context::coverage_of(projected(centres, georef::Projection(crs, survey.facts.box)));
-  if (!area) progress.warn(options.input + ": no building with an outline; the outputs are valid but empty");
+  if (!area) progress.warn(told_input(options) + ": no building with an outline; the outputs are valid but empty");
   return survey;
 }
 

@@ -2,7 +2,6 @@
 #include "pipeline/run/build.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -27,10 +26,12 @@
 #include "pipeline/outputs/output.h"
 #include "pipeline/outputs/statistics.h"
 #include "pipeline/run/account.h"
+#include "pipeline/run/before_tiles.h"
 #include "pipeline/run/build_areas.h"
 #include "pipeline/run/build_inputs.h"
 #include "pipeline/run/data_identity.h"
 #include "pipeline/run/documents.h"
+#include "pipeline/run/estimate.h"
 #include "pipeline/run/imagery_stage.h"
 #include "pipeline/run/outcome.h"
 #include "pipeline/run/output_place.h"
@@ -48,41 +49,12 @@ namespace {
 using model::Extract;
 using model::Region;
 
-std::uint64_t peak_rss_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-}
-
-std::uint64_t current_rss_bytes() {
-  std::ifstream statm("/proc/self/statm");
-  std::uint64_t total = 0, resident = 0;
-  statm >> total >> resident;
-  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
-
 // ---- before the tiles
-
-const std::string& checked_output(const BuildOptions& options) {
-  std::vector<std::string> inputs = {options.input,  options.terrain, options.overrides,
-                                     options.pinned, options.configs, options.districts};
-  for (const importers::imagery::ImageSource& image : options.imagery.images) inputs.push_back(image.path);
-  base::refuse_inputs_in(options.output, inputs);
-  if (!options.cache.empty()) {
-    std::error_code error;
-    const std::string out = std::filesystem::weakly_canonical(options.output, error).string() + "/",
-                      cache = std::filesystem::weakly_canonical(options.cache, error).string() + "/";
-    if (cache.starts_with(out))
-      throw base::UsageError("--cache " + options.cache +
-                             " lies in the output folder, which is replaced: name another one");
-  }
-  return options.output;
-}
 
 /// The folder in the making, and how many models the build has that it would replace.
 struct Place {
   Place(const BuildOptions& options, base::Progress& progress)
-      : folder(checked_output(options), options.force, {.foreign = foreign_files}),
+      : folder(checked_output(options), options.force, {.foreign = foreign_files, .counts_only = options.measure}),
         earlier(earlier_models(folder.target_path())) {
     tell_removed(folder, progress);
   }
@@ -102,26 +74,6 @@ void record_extract(const BuildOptions& options, const BuildInputs& inputs, cons
   record.crs = located.crs;
   record.portable = located.projection.portable();
   record.round_trip = located.round_trip;
-}
-
-void warn_of_heights(const BuildOptions& options, const BuildInputs& inputs, base::Progress& progress) {
-  if (!inputs.terrain && !options.ground_height)
-    progress.warn("no --terrain and no --ground-height: the model lies at ellipsoid height 0");
-  for (const std::string& warning : inputs.heights.warnings) progress.warn(warning);
-}
-
-/// \returns  rows about overrides that match nothing. A tile alone does not see what lies elsewhere: the build of the
-///           whole tells that
-model::Report override_extract(const BuildOptions& options, BuildInputs& inputs, Extract& extract,
-                               base::Progress& progress) {
-  model::Report report;
-  attributes::apply_overrides(inputs.overrides, extract, report);
-  if (inputs.tile) report.rows.clear();
-  if (!report.rows.empty())
-    progress.warn(fmt::format(
-        "{}: {} of {} entries match nothing in the extract, the first in {}; report.json lists them", options.overrides,
-        report.rows.size(), inputs.overrides.entries.size(), report.rows.front().detail));
-  return report;
 }
 
 /// What district rules may ask for. \param inputs, located, prepared, neighbours  outlive the result
@@ -284,7 +236,11 @@ void finish_outputs(const OpenOutputs& open, const Region& whole, const Account&
       .warn = [&](const std::string& text) { progress.warn(text); },
       .tell = [&](std::string_view path,
                   std::string figures) { record.summary.figures[std::string(path)] = std::move(figures); }};
-  for (const auto& output : open.list) output->finish(finished);
+  std::uint64_t ready = 0;
+  for (const auto& output : open.list) {
+    output->finish(finished);
+    progress.advance_to(++ready);
+  }
   for (const auto& output : open.list) output->conclude(finished);
   std::ranges::sort(record.files, {}, &base::PublishedFile::path);
   for (const base::PublishedFile& f : record.files) record.summary.bytes += f.bytes;
@@ -295,7 +251,7 @@ void finish_outputs(const OpenOutputs& open, const Region& whole, const Account&
 RunRecord run_record(const BuildOptions& options, std::chrono::steady_clock::time_point start, double context_seconds,
                      int workers, const base::Progress& progress, BuildSummary& summary) {
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  summary.peak_rss_bytes = peak_rss_bytes();
+  summary.peak_rss_bytes = peak_memory();
   RunRecord run;
   run.timings = progress.times();
   run.seconds = summary.seconds;
@@ -328,6 +284,8 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   BuildSummary& summary = record.summary;
 
   // Everything that can be refused without reading the extract is refused first.
+  progress.begin("check");
+  if (!options.crs.empty()) georef::check_crs(options.crs);
   Place place(options, progress);
   base::StagedFolder& folder = place.folder;
   BuildInputs inputs(options);
@@ -337,7 +295,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   LocatedExtract located = locate_extract(options, tile, progress, part ? &part->store : nullptr);
   Extract& extract = located.extract;
   const georef::Projection& projection = located.projection;
-  if (located.area) warn_of_heights(options, inputs, progress);
+  if (located.area) warn_of_heights(options, inputs, located.facts.centre, progress);
   ImageryStage imagery(options, inputs, located, progress);
 
   // The whole extract: footprints, context, evidence.
@@ -377,8 +335,12 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
       shards_here.push_back(georef::contains(tile->id, shard.tile) ? shard : footprints::Shard{shard.tile, {}});
   std::uint64_t to_build = 0;
   for (const std::size_t shard : todo) to_build += shards[shard].seeds.size();
-  if (!options.plan) check_free_space(options, to_build, folder);
-  summary.store_bytes = current_rss_bytes();
+  if (!options.plan && !options.measure) {
+    std::vector<footprints::Shard> here;
+    for (const std::size_t shard : todo) here.push_back(shards[shard]);
+    check_free_space(options, disk_bytes(town_size(extract, here).all, options), folder.free_bytes());
+  }
+  summary.store_bytes = current_memory();
 
   // The tiles: every stage, then every output.
   const int workers = base::worker_count(options.jobs);
@@ -480,9 +442,9 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   sums.settle(record);
   warn_of_terrain(inputs, progress);
   account.close(tile, shards, todo, summary);
-  refuse_shrunk(options, summary, place.earlier);
+  if (!options.measure) refuse_shrunk(options, summary, place.earlier);
 
-  progress.begin("documents");
+  progress.begin("documents", open.list.size() + 2);
   finish_outputs(open, sums.whole, account, record, progress);
   if (cache) tell_cache(*cache, options, summary, progress);
   folder.write("build.json", build_json(options, record));
@@ -490,12 +452,17 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
 
   summary.tiles_in_flight = std::min<std::uint64_t>(in_flight, todo.size());
   const double context_seconds = 1e-9 * static_cast<double>(context_time.load());
+  if (options.measure) return summary;
   folder.write("run.json", run_json(run_record(options, start, context_seconds, workers, progress, summary), summary));
   publish(folder, options, summary, progress);
   return summary;
 }
 
 }  // namespace
+
+std::string told_input(const BuildOptions& options) {
+  return options.input_told.empty() ? options.input : options.input_told;
+}
 
 std::string name_of(const BuildOptions& options) {
   if (!options.name.empty()) return options.name;

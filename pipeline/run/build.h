@@ -40,6 +40,9 @@ struct BuildSummary : outputs::ObjectCounts {
   std::string folder;  ///< where the build lies: beside the output folder where it must not replace it
 };
 
+/// How people know the extract: its path, of standard input a word for it.
+std::string told_input(const BuildOptions& options);
+
 /// What pages call the build: the name given, else that of the extract without the endings of its format.
 std::string name_of(const BuildOptions& options);
 

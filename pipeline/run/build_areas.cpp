@@ -28,6 +28,7 @@
 #include "pipeline/run/area_overview.h"
 #include "pipeline/run/area_survey.h"
 #include "pipeline/run/build_inputs.h"
+#include "pipeline/run/estimate.h"
 #include "pipeline/run/output_place.h"
 #include "pipeline/run/region_state.h"
 #include "pipeline/run/tile_key.h"
@@ -67,25 +68,6 @@ AreaOutcome outcome_of(BuildSummary&& s) {
           std::move(s.open_walls)};
 }
 
-void refuse_contradictions(const BuildOptions& options) {
-  if (options.outputs.single_glb || options.outputs.single_cityjson)
-    throw base::UsageError(
-        fmt::format("{} is a file of the whole model, which a build in areas never has in memory: build without {}",
-                    options.outputs.single_glb ? "--single-glb" : "--single-cityjson",
-                    options.areas > 0 ? "--areas (areas = 1 in region.toml)" : "--area"));
-  const char* what = options.bbox                      ? "--bbox"
-                     : !options.tile.empty()           ? "--tile"
-                     : !options.imagery.images.empty() ? "--imagery"
-                     : options.outputs.imagery         ? "--imagery"
-                                                       : nullptr;
-  if (options.areas > 0 && !options.area.empty()) throw base::UsageError("--area and --areas contradict each other");
-  if (what)
-    throw base::UsageError(
-        fmt::format("{} cannot be used with --{}: build without areas (areas = 1 in region.toml), or cut the "
-                    "extract first",
-                    what, options.areas > 0 ? "areas" : "area"));
-}
-
 /// Of this process from here on: what is freed goes back to the system. 9 to 14 % less at the peak of a dense area at LoD3, for 1 %
 /// more CPU time.
 void keep_memory_low() {
@@ -105,7 +87,7 @@ std::uint64_t divide(const BuildOptions& options, int level, const std::string& 
     if (!importers::osm::write_store(options.input, store, level, kHalo)) {
       const importers::osm::AppliedChanges applied = importers::osm::apply_changes(options.input, {}, sorted);
       if (applied.cleaned_texts)
-        child.warn(options.input + ": NUL characters in its texts were replaced; reports do not repeat that");
+        child.warn(told_input(options) + ": NUL characters in its texts were replaced; reports do not repeat that");
       if (!importers::osm::write_store(sorted, store, level, kHalo))
         throw std::logic_error("a sorted extract is not sorted");
       fs::remove(sorted, error);
@@ -165,12 +147,14 @@ class AreaBuild {
   }
 
   BuildSummary run() {
+    if (!options_.crs.empty()) georef::check_crs(options_.crs);
+    { const BuildInputs inputs(options_); }  // what is wrong with them is told before the extract is read
     open_cache();
     progress_.begin("divide");
     peak_ = divide(options_, options_.areas, work_, progress_);
     const ExtractStore store(work_ + "/store");
     if (store.figures().cleaned_texts)
-      progress_.warn(options_.input + ": NUL characters in its texts were replaced; reports do not repeat that");
+      progress_.warn(told_input(options_) + ": NUL characters in its texts were replaced; reports do not repeat that");
     progress_.begin("survey");
     survey(store);
     choose(store);
@@ -341,7 +325,9 @@ class AreaBuild {
         done += objects->second;
     }
     progress_.advance_to(done);
-    if (!options_.plan) check_free_space(options_, all - done, folder_);  // now, not when half of the areas are done
+    if (!options_.plan)
+      check_free_space(options_, disk_bytes(usual_size(all - done), options_),
+                       folder_.free_bytes());  // now, not when half of the areas are done
     BuildOptions of_area = named_;
     of_area.force = false;
     of_area.jobs = jobs_;
@@ -469,13 +455,33 @@ class AreaBuild {
 
 }  // namespace
 
+void refuse_contradictions_of_areas(const BuildOptions& options) {
+  if (options.areas == 0 && options.area.empty()) return;
+  if (options.outputs.single_glb || options.outputs.single_cityjson)
+    throw base::UsageError(
+        fmt::format("{} is a file of the whole model, which a build in areas never has in memory: build without {}",
+                    options.outputs.single_glb ? "--single-glb" : "--single-cityjson",
+                    options.areas > 0 ? "--areas (areas = 1 in region.toml)" : "--area"));
+  const char* what = options.bbox                      ? "--bbox"
+                     : !options.tile.empty()           ? "--tile"
+                     : !options.imagery.images.empty() ? "--imagery"
+                     : options.outputs.imagery         ? "--imagery"
+                                                       : nullptr;
+  if (options.areas > 0 && !options.area.empty()) throw base::UsageError("--area and --areas contradict each other");
+  if (what)
+    throw base::UsageError(
+        fmt::format("{} cannot be used with --{}: build without areas (areas = 1 in region.toml), or cut the "
+                    "extract first",
+                    what, options.areas > 0 ? "areas" : "area"));
+}
+
 BuildSummary build_in_areas(const BuildOptions& options, base::Progress& progress) {
-  refuse_contradictions(options);
+  refuse_contradictions_of_areas(options);
   return AreaBuild(options, progress).run();
 }
 
 BuildSummary build_one_area(const BuildOptions& options, base::Progress& progress) {
-  refuse_contradictions(options);
+  refuse_contradictions_of_areas(options);
   if (options.pinned.empty())
     throw base::UsageError(
         "--area needs --pinned build.json of a build with --areas: an area alone cannot choose the CRS");

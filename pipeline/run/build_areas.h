@@ -24,6 +24,9 @@ struct AreaPart {
   TileChoice choice;
 };
 
+/// \throws base::UsageError  --areas or --area with what they cannot be used with
+void refuse_contradictions_of_areas(const BuildOptions& options);
+
 /// BuildOptions::areas. \throws as build
 BuildSummary build_in_areas(const BuildOptions& options, base::Progress& progress);
 

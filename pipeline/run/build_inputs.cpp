@@ -83,6 +83,10 @@ std::vector<InputFile> input_files(const BuildOptions& options, const BuildInput
   return files;
 }
 
-InputFile extract_file(const BuildOptions& options) { return input_file("extract", options.input); }
+InputFile extract_file(const BuildOptions& options) {
+  InputFile file = input_file("extract", options.input);
+  if (!options.input_told.empty()) file.path = options.input_told;
+  return file;
+}
 
 }  // namespace blockrand::run

@@ -18,6 +18,7 @@ namespace blockrand::run {
 struct BuildOptions {
   std::string input;                          ///< .osm, .osm.pbf, .osm.gz, .osm.bz2
   std::string name;                           ///< of the build, for people; empty: that of `input`
+  std::string input_told;                     ///< what people call `input`, where it is a copy; empty: its path
   std::string output;                         ///< folder that the build becomes
   std::string configs;                        ///< folder with defaults/ and materials/; empty: found by the program
   std::optional<std::array<double, 4>> bbox;  ///< west, south, east, north in degrees
@@ -29,13 +30,14 @@ struct BuildOptions {
   std::string settings;                  ///< says whether a build of `earlier` had the same; of `update`
   std::int64_t memory_limit = 0;         ///< bytes for all areas in work; 0: one at a time
   std::string crs;                       ///< "EPSG:…"; empty: chosen from the extent
-  int lod = 2;                           ///< highest level of detail, 0 to 3
+  int lod = 3;                           ///< highest level of detail, 0 to 3
   bool force = false;                    ///< replace an existing build
   bool allow_empty = false;              ///< a build without models may replace one with some
   double allow_shrink = 50;              ///< percent fewer models than the build that is replaced
   bool strict = false;                   ///< exit code 3 when a building is below the asked quality
   int jobs = 0;                          ///< worker threads; 0: one per core
   bool plan = false;                     ///< only look what there is to do: `output` is not written
+  bool measure = false;                  ///< files are counted, not written; no earlier build matters
   std::string cache;                     ///< folder where the work on tiles is kept for later runs, or empty
   std::uint64_t seed = 1;                ///< of all random choices
   std::string terrain;                   ///< raster with ground heights, or empty

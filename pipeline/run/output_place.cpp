@@ -12,7 +12,6 @@
 #include "pipeline/base/side_files.h"
 #include "pipeline/base/text.h"
 #include "pipeline/outputs/area_folders.h"
-#include "pipeline/outputs/output.h"
 
 namespace blockrand::run {
 namespace {
@@ -83,10 +82,8 @@ void refuse_shrunk(const BuildOptions& options, const BuildSummary& summary, std
         stays.substr(1) + fmt::format("--allow-shrink {:.0f}.", std::min(100.0, std::ceil(lost))));
 }
 
-void check_free_space(const BuildOptions& options, std::uint64_t buildings, const base::StagedFolder& folder) {
-  const double each = outputs::bytes_per_building(options.outputs, options.lod);
-  const std::uint64_t wanted = static_cast<std::uint64_t>(1.25 * each * static_cast<double>(buildings)) + 1'000'000;
-  const std::uint64_t free = folder.free_bytes();
+void check_free_space(const BuildOptions& options, std::uint64_t bytes, std::uint64_t free) {
+  const std::uint64_t wanted = bytes + bytes / 4 + 1'000'000;
   if (wanted > free)
     throw base::OutputError(fmt::format(
         "{}: about {} needed, {} free. Free some space, choose another disk with -o, fewer --formats or --gzip",

@@ -29,7 +29,9 @@ std::optional<std::uint64_t> earlier_models(const std::string& folder);
 /// \throws base::InputError  the new build has no models, or fewer than BuildOptions::allow_shrink lets go
 void refuse_shrunk(const BuildOptions& options, const BuildSummary& summary, std::optional<std::uint64_t> earlier);
 
-/// \throws base::OutputError  too little space for so many buildings, with a reserve of a quarter
-void check_free_space(const BuildOptions& options, std::uint64_t buildings, const base::StagedFolder& folder);
+/// \param free  bytes where the output lies
+/// \throws base::OutputError  too little space for so much, with a reserve of a quarter
+/// \param bytes  that the build takes, about
+void check_free_space(const BuildOptions& options, std::uint64_t bytes, std::uint64_t free);
 
 }  // namespace blockrand::run

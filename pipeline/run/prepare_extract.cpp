@@ -15,17 +15,29 @@ namespace blockrand::run {
 
 LocatedExtract locate_extract(const BuildOptions& options, const std::optional<TileChoice>& tile,
                               base::Progress& progress, const importers::osm::ExtractStore* store) {
-  progress.begin("read");
+  constexpr std::uint64_t kScale = 1000;
+  progress.begin("read", kScale);
   importers::osm::ReadOptions read_options;
+  // Of each pass the progress says half of what is left: how many there will be, nobody knows before.
+  double done = 0, left = 1;
+  std::string pass;
+  read_options.progress = [&](std::string_view name, double fraction) {
+    if (name != pass) {
+      if (!pass.empty()) done += left / 2, left /= 2;
+      pass = name;
+    }
+    progress.advance_to(static_cast<std::uint64_t>((done + fraction * left / 2) * static_cast<double>(kScale)));
+  };
   read_options.bbox = tile ? tile->window : options.bbox;
   model::Extract extract = store && tile ? store->read(tile->id, read_options, tile->placeless)
                                          : importers::osm::read_extract(options.input, read_options);
+  if (!options.input_told.empty()) extract.file = options.input_told;
   malloc_trim(0);  // libosmium's buffers go back to the system before tiles need the room
 
   progress.begin("locate");
   const std::optional<footprints::Area> area = footprints::area_of(extract);
   if (!area)
-    progress.warn(fmt::format("{}: no building with an outline{}; the outputs are valid but empty", options.input,
+    progress.warn(fmt::format("{}: no building with an outline{}; the outputs are valid but empty", told_input(options),
                               options.bbox || tile ? " in the given place" : ""));
   RegionFacts facts;
   if (tile) {

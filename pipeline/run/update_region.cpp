@@ -18,7 +18,9 @@
 #include "pipeline/base/error.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/base/text.h"
+#include "pipeline/georef/crs.h"
 #include "pipeline/outputs/area_folders.h"
+#include "pipeline/run/build_inputs.h"
 #include "pipeline/run/changes_map.h"
 #include "pipeline/run/region_folder.h"
 #include "pipeline/run/region_hook.h"
@@ -272,6 +274,9 @@ class Updater {
   }
 
   AppliedChanges make_data(const Plan& plan, std::optional<int> current, const std::string& path) {
+    // What is wrong with settings and inputs is told before long data are read.
+    if (!options_.build.crs.empty()) georef::check_crs(options_.build.crs);
+    { const BuildInputs inputs(options_.build); }
     progress_.begin("apply changes");
     std::string base = plan.extract;
     if (base.empty()) {

@@ -29,6 +29,13 @@ std::string shown(const Option& option) {
   }
   std::string word = given.substr(given.find_first_not_of('-') == std::string::npos ? 0 : given.find_first_not_of('-'));
   word = word.substr(0, word.find('='));
+  for (const Option& o : options()) {
+    if (o.positional() || !given.starts_with("--") || (word != o.name && word != "no-" + std::string(o.name))) continue;
+    std::string whose;
+    for (const Commands c : kAllCommands)
+      if (o.commands & c) whose += fmt::format("{}{}", whose.empty() ? "" : ", ", name(c));
+    wrong_usage(fmt::format("--{} is an option of {}, which {} does not read.", word, whose, name(command)), command);
+  }
   const std::string near = given.starts_with("--") ? base::nearest(word, known) : "";
   wrong_usage(fmt::format("unknown option {}.{}", given.substr(0, given.find('=')),
                           near.empty() ? "" : " Did you mean --" + near + "?"),
@@ -44,6 +51,19 @@ void set(const Option& option, Settings& settings, const std::string& value) {
 }
 
 }  // namespace
+
+void refuse_unread(const CommandLine& line, Commands command, std::string_view action,
+                   const std::vector<Reader>& readers) {
+  for (const Reader& reader : readers) {
+    if (std::ranges::find(line.given, reader.option) == line.given.end() ||
+        std::ranges::find(reader.actions, action) != reader.actions.end())
+      continue;
+    std::string who;
+    for (const std::string_view a : reader.actions)
+      who += fmt::format("{}{} {}", who.empty() ? "" : " and ", name(command), a);
+    wrong_usage(fmt::format("--{} is read by {}, not by {} {}.", reader.option, who, name(command), action), command);
+  }
+}
 
 CommandLine read_command_line(Commands command, const std::vector<std::string>& arguments, Settings before) {
   CommandLine line;
@@ -89,6 +109,8 @@ CommandLine read_command_line(Commands command, const std::vector<std::string>& 
     wrong_usage(fmt::format("unexpected argument {}{}.", extra, taken.empty() ? "" : ": " + taken + " already"),
                 command);
   }
+  for (const auto& [o, option] : parsed)
+    if (!o->positional() && option->count() > 0) line.given.emplace_back(o->name);
   // The file first, so that the command line is stronger.
   for (const auto& [o, option] : parsed) {
     if (o->name != "config" || option->count() == 0) continue;

@@ -55,8 +55,13 @@ Table of_regions() {
                          "without any, what region.toml names; region repair: an extract"},
                 &S::data),
           flag({.name = "dry-run",
-                .commands = kUpdate,
-                .help = "tell what would be done and how long that may take; nothing is built",
+                .commands = kUpdate | kBuild,
+                .help = "tell what would be done and how long that may take; nothing is built; build: check all that "
+                        "can be checked before, and write nothing",
+                .help_of = {{kUpdate, "tell what would be done and how long that may take; nothing is built"},
+                            {kBuild,
+                             "check options, inputs and place, tell what would be built and what that would "
+                             "take; nothing is written"}},
                 .after = "force"},
                &S::dry_run),
           flag({.name = "break-lock",
@@ -309,6 +314,11 @@ Table of_messages() {
                .commands = all,
                .help = "messages, progress and the summary as text or as json lines"},
               kLogFormats, &S::log_format),
+       flag({.name = "verbose",
+             .letter = "v",
+             .commands = kBuild,
+             .help = "end with figures for developers as well: memory, how roofs stand in their rows"},
+            &S::verbose),
        flag({.name = "quiet", .letter = "q", .commands = all, .help = "warnings and errors only"}, &S::quiet)});
 }
 

@@ -61,7 +61,7 @@ std::string option_help(unsigned command) {
       if (!o.positional()) names += o.letter.empty() ? "    " : "-" + std::string(o.letter) + ", ";
       names += shown_name(o);
       if (!o.positional() && !o.argument.empty()) names += " " + std::string(o.argument);
-      std::string help(shown_help(o));
+      std::string help(shown_help(o, command));
       const std::string fallback = default_text(o);
       if (!fallback.empty()) help += " [" + fallback + "]";
       rows += row(names, help);

@@ -99,7 +99,8 @@ void read_config(const std::string& path, Settings& settings, unsigned commands)
 std::string config_template(unsigned commands) {
   std::string text =
       commands & kUpdate
-          ? "# How this region is built: `blockrand update` reads it. Every key stands here with its default.\n"
+          ? "# How this region is built: `blockrand update` reads it. Every key stands here with its default, "
+            "commented out but for lod.\n"
             "# Relative paths start at this file's folder. Limits in [gates] keep a bad night's build back.\n"
           : "# Options of `blockrand build`, read with --config FILE.toml; the command line is stronger.\n"
             "# Every key stands here with its default. Relative paths start at this file's folder.\n";
@@ -117,7 +118,10 @@ std::string config_template(unsigned commands) {
       const bool bare =
           option.type == OptionType::flag || option.type == OptionType::integer || option.type == OptionType::number;
       if (!bare || value.empty()) value = "\"" + value + "\"";
-      text += "# " + std::string(option.help) + "\n# " + std::string(option.key) + " = " + value + "\n";
+      // Of a region it stands there: its builds stay what they are, should the default change.
+      const bool holds = (commands & kUpdate) && option.name == "lod";
+      text +=
+          "# " + std::string(option.help) + "\n" + (holds ? "" : "# ") + std::string(option.key) + " = " + value + "\n";
     }
   }
   text +=

@@ -83,6 +83,10 @@ std::string shown_name(const Option& option) {
   return (on_by_default(option) ? "--no-" : "--") + std::string(option.name);
 }
 
-std::string_view shown_help(const Option& option) { return on_by_default(option) ? option.without : option.help; }
+std::string_view shown_help(const Option& option, unsigned commands) {
+  for (const auto& [of, help] : option.help_of)
+    if (commands != 0 && (commands & ~of) == 0) return help;
+  return on_by_default(option) ? option.without : option.help;
+}
 
 }  // namespace blockrand::settings

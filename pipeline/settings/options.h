@@ -23,7 +23,7 @@ struct Settings {
   std::string region;  ///< folder of a region, for the commands that are about one
   run::RegionOptions region_options;
   std::vector<std::string> data;                    ///< of `update`: an extract, change files
-  bool dry_run = false;                             ///< `update` tells what it would do
+  bool dry_run = false;                             ///< `build` and `update` tell what they would do
   bool break_lock = false;                          ///< the lock of another host is taken over
   std::int64_t to = -1;                             ///< build that `rollback` goes to; -1: the one before
   std::string region_work;                          ///< of `region`: repair
@@ -57,7 +57,8 @@ struct Settings {
   std::string site;                          ///< folder that `view` writes; empty: it serves
   base::ProgressStyle progress = base::ProgressStyle::automatic;
   base::LogFormat log_format = base::LogFormat::text;
-  bool quiet = false;  ///< warnings and errors only
+  bool verbose = false;  ///< `build` ends with figures for developers, too
+  bool quiet = false;    ///< warnings and errors only
 };
 
 using Option = base::Option<Settings>;
@@ -92,7 +93,7 @@ std::string shown_name(const Option& option);
 /// "0 to 2", "from 0"; empty where any value will do.
 std::string range_text(const Option& option);
 
-/// What that name does, without the default.
-std::string_view shown_help(const Option& option);
+/// What that name does, without the default. \param commands  bits: to whom; all that say the same, or nobody in particular
+std::string_view shown_help(const Option& option, unsigned commands = 0);
 
 }  // namespace blockrand::settings

@@ -32,7 +32,7 @@ for file in "$data"/*.pbf "$data"/*.osm "$data"/*.gz; do
     [ $wanted = yes ] || continue
   fi
   target=$out/${name%%.*}
-  if ! "$program" build "$file" -o "$target" --force --progress=none --jobs "$jobs" >"$out/log.txt" 2>&1; then
+  if ! "$program" build "$file" -o "$target" --force --lod 2 --progress=none --jobs "$jobs" >"$out/log.txt" 2>&1; then
     echo "| $name | failed: $(tail -n 1 "$out/log.txt") |"; status=1; continue
   fi
   python3 - "$name" "$target" <<'PY'

@@ -16,7 +16,7 @@ class BadExtracts(BuildTest):
 
     def refuse(self, source, *words):
         out = self.path('refused', 'deep', 'out')
-        run = blockrand('build', source, '-o', out, '--progress', 'none')
+        run = blockrand('build', source, '-o', out, '--lod', '2', '--progress', 'none')
         self.refused(run, 2, os.path.basename(source), *words, target=out)
         self.assertFalse(os.path.exists(self.path('refused')), 'a folder made for the output stays behind')
         return run
@@ -70,7 +70,7 @@ class BadExtracts(BuildTest):
             at = 5 + (len(data) - 10) * i // 40
             source = self.place('damaged.osm.pbf', data[:at] + bytes([data[at] ^ 0xff]) + data[at + 1:])
             out = self.path('damaged')
-            run = blockrand('build', source, '-o', out, '--force', '--progress', 'none')
+            run = blockrand('build', source, '-o', out, '--force', '--lod', '2', '--progress', 'none')
             self.assertIn(run.code, (0, 2), run)
             refused += run.code == 2
             self.assertEqual(stray_siblings(out), [])
@@ -209,7 +209,7 @@ class WrongCalls(BuildTest):
     def test_unknown_option_names_the_nearest(self):
         self.wrong('build', SAMPLE, '-o', self.path('out'), '--job', '4', words=['--job', '--jobs'])
         self.wrong('build', SAMPLE, '-o', self.path('out'), '--gzipp', words=['--gzipp', '--gzip'])
-        self.wrong('info', SAMPLE, '--single-glb', words=['--single-glb'])
+        self.wrong('info', SAMPLE, '--strict', words=['--strict', 'option of build'])
 
     def test_two_inputs(self):
         self.wrong('build', SAMPLE, SAMPLE, '-o', self.path('out'))
@@ -371,7 +371,7 @@ class WrongPlaces(BuildTest):
         out = self.build(SAMPLE, 'kept', '--lod', '0')
         before = hashes(out)
         for source in (self.place('zero.osm', b''), self.path('absent.osm')):
-            self.assertEqual(blockrand('build', source, '-o', out, '--force').code, 2)
+            self.assertEqual(blockrand('build', source, '-o', out, '--force', '--lod', '2').code, 2)
             self.assertEqual(hashes(out), before)
             self.assertEqual(stray_siblings(out), [])
 

@@ -73,7 +73,7 @@ class Installed(BuildTest):
             f.write('# other bytes than those of the source tree\n')
         target = os.path.join(prefix, 'out')
         run = self.bare(prefix, 'build', os.path.join(prefix, 'share/doc/blockrand/examples/blockrand-viertel.osm'), '-o',
-                        target, '--progress', 'none')
+                        target, '--lod', '2', '--progress', 'none')
         self.assertEqual(run.code, 0, run)
         read = {i['path']: i['sha256'] for i in read_json(target, 'build.json')['inputs'] if i['role'] == 'config'}
         self.assertEqual(read['defaults/uses.toml'], sha256(uses))
@@ -93,7 +93,7 @@ class Installed(BuildTest):
         shutil.rmtree(os.path.join(prefix, 'share/blockrand'))
         run = self.bare(prefix, 'build', SAMPLE, '-o', self.path('never'), '--progress', 'none')
         self.refused(run, 1, os.path.join(prefix, 'share/blockrand/configs'), '--configs', target=self.path('never'))
-        run = self.bare(prefix, 'build', SAMPLE, '-o', self.path('given'), '--progress', 'none', '--configs',
+        run = self.bare(prefix, 'build', SAMPLE, '-o', self.path('given'), '--lod', '2', '--progress', 'none', '--configs',
                         os.path.join(SOURCE, 'configs'))
         self.assertEqual(run.code, 0, run)
         self.same_files(self.path('given'), self.expected, 'tiles', 'citygml')

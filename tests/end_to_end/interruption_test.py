@@ -43,7 +43,7 @@ class InterruptionTest(BuildTest):
         cls.town = write_pbf(os.path.join(cls.folder, 'town.osm.pbf'), town(12000))
 
     def start(self, target, *options):
-        return subprocess.Popen([Setup.program, 'build', self.town, '-o', target, '--force', '--progress', 'none', *options],
+        return subprocess.Popen([Setup.program, 'build', self.town, '-o', target, '--force', '--lod', '2', '--progress', 'none', *options],
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
 
     def wait_for_files(self, process, target, at_least):
@@ -126,7 +126,7 @@ class Interruption(InterruptionTest):
         first = self.start(target)
         self.assertTrue(self.wait_for_files(first, target, 1))
         staging = staging_of(target)
-        second = blockrand('build', SAMPLE, '-o', target, '--force', '--progress', 'none')
+        second = blockrand('build', SAMPLE, '-o', target, '--force', '--lod', '2', '--progress', 'none')
         self.assertIn(second.code, (0, 4), second)
         if first.poll() is None:
             self.assertTrue(os.path.isdir(staging), 'the staging folder of a living process was removed')
@@ -148,7 +148,7 @@ class FullDisk(InterruptionTest):
         self.assertEqual(stray_siblings(target), [])
 
     def rebuild(self, target, *options, **how):
-        return blockrand('build', SAMPLE, '-o', target, '--force', '--progress', 'none', *options, **how)
+        return blockrand('build', SAMPLE, '-o', target, '--force', '--lod', '2', '--progress', 'none', *options, **how)
 
     def test_file_size_limit(self):
         """ulimit -f stands for a quota: needs no rights. In every format the largest file is over the limit."""
@@ -161,7 +161,7 @@ class FullDisk(InterruptionTest):
 
     def test_file_size_limit_without_an_old_build(self):
         target = self.path('nothing', 'out')
-        run = blockrand('build', SAMPLE, '-o', target, preexec=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000)))
+        run = blockrand('build', SAMPLE, '-o', target, '--lod', '2', preexec=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000)))
         self.refused(run, 4, target=target)
         self.assertFalse(os.path.exists(self.path('nothing')))
 
@@ -169,7 +169,7 @@ class FullDisk(InterruptionTest):
         """Free space is looked at before anything is written."""
         with small_disk(self.path('small'), 'size=1200k') as disk:
             target = os.path.join(disk, 'out')
-            old = blockrand('build', SAMPLE, '-o', target, '--bbox', '11.0290,51.4690,11.0300,51.4700', '--formats', 'gltf')
+            old = blockrand('build', SAMPLE, '-o', target, '--lod', '2', '--bbox', '11.0290,51.4690,11.0300,51.4700', '--formats', 'gltf')
             self.assertEqual(old.code, 0, old)
             self.ended_badly(self.rebuild(target), target, hashes(target), 'needed', 'free')
 
@@ -177,7 +177,7 @@ class FullDisk(InterruptionTest):
         """ENOSPC at the creation of the n-th file, although there is space enough: from the first to the last but one."""
         with small_disk(self.path('inodes'), 'size=64m') as disk:
             target = os.path.join(disk, 'out')
-            self.assertEqual(blockrand('build', SAMPLE, '-o', target).code, 0)
+            self.assertEqual(blockrand('build', SAMPLE, '-o', target, '--lod', '2').code, 0)
             before, used = hashes(target), os.statvfs(disk)
             used = used.f_files - used.f_ffree
             refused = 0
@@ -196,7 +196,7 @@ class FullDisk(InterruptionTest):
         """Another program takes the space after the check: ENOSPC in the middle of a write."""
         with small_disk(self.path('filling'), 'size=400m') as disk:
             target = os.path.join(disk, 'out')
-            self.assertEqual(blockrand('build', SAMPLE, '-o', target).code, 0)
+            self.assertEqual(blockrand('build', SAMPLE, '-o', target, '--lod', '2').code, 0)
             before = hashes(target)
             process = self.start(target)
             self.assertTrue(self.wait_for_files(process, target, 1))
@@ -220,7 +220,7 @@ class FullDisk(InterruptionTest):
     def test_read_only_disk(self):
         with small_disk(self.path('readonly'), 'size=64m') as disk:
             target = os.path.join(disk, 'out')
-            self.assertEqual(blockrand('build', SAMPLE, '-o', target).code, 0)
+            self.assertEqual(blockrand('build', SAMPLE, '-o', target, '--lod', '2').code, 0)
             before = hashes(target)
             self.assertEqual(call(['mount', '-o', 'remount,ro', disk]).code, 0)
             run = self.rebuild(target)
@@ -244,7 +244,7 @@ class FullDisk(InterruptionTest):
         """The summary cannot be printed: exit code not 0, the build is there all the same."""
         target = self.path('stdout')
         with open('/dev/full', 'wb') as full:
-            done = subprocess.run([Setup.program, 'build', SAMPLE, '-o', target], stdout=full, stderr=subprocess.PIPE)
+            done = subprocess.run([Setup.program, 'build', SAMPLE, '-o', target, '--lod', '2'], stdout=full, stderr=subprocess.PIPE)
         self.assertEqual(done.returncode, 4, done.stderr)
         self.hashes_match(target)
 

@@ -198,7 +198,7 @@ class Slopes(OnTerrain):
             self.assertEqual(sha256(os.path.join(out, part)), sha256(os.path.join(alone, part)), part)
         self.same_files(out, self.build(SAMPLE, 'one', '--jobs', 1, *terrain))
         target = self.path('other')
-        run = blockrand('build', SAMPLE, '-o', target, '--tile', tile, '--pinned', os.path.join(out, 'build.json'),
+        run = blockrand('build', SAMPLE, '-o', target, '--lod', '2', '--tile', tile, '--pinned', os.path.join(out, 'build.json'),
                         '--terrain', path, '--terrain-height-reference', 'ellipsoid')
         self.refused(run, 1, 'terrain_height_reference', target=target)
 

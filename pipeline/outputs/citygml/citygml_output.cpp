@@ -54,12 +54,12 @@ OutputFormat citygml_output() {
           .places = {{"citygml/", "CityGML 2.0, one file per tile"}},
           .manual = {{"citygml/", "CityGML 2.0, LoD0 to LoD3 with boundary surfaces, one file per tile"}},
           .asked = [](const OutputOptions& o) { return o.writes("citygml"); },
-          .bytes_per_building =
+          .size =
               [](const OutputOptions& o, std::size_t lod) {
-                // Of LoD3 a house of a dense quarter of tenements; in a whole city centre it is three fifths of that.
-                constexpr double kBytes[] = {2500, 5500, 12500, 115000}, kFull = 340000;
-                const double bytes = lod == 3 && o.citygml_detail == CityGmlDetail::full ? kFull : kBytes[lod];
-                return o.gzip ? bytes / (lod == 3 ? 12 : 7) : bytes;
+                constexpr double kBytes[] = {2500, 7500, 16500, 16500}, kPerWall = 100, kFull = 300;
+                const double less = !o.gzip ? 1 : lod == 3 ? 12 : 7;
+                const double wall = lod < 3 ? 0 : o.citygml_detail == CityGmlDetail::full ? kFull : kPerWall;
+                return OutputSize{.per_building = kBytes[lod] / less, .per_wall = wall / less, .memory = 8e6};
               },
           .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<CityGmlOutput>(c); }};
 }

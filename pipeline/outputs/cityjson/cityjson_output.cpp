@@ -95,11 +95,15 @@ OutputFormat cityjson_output() {
                   [](const OutputOptions& o, std::uint64_t) { return o.single_cityjson; }}},
       .manual = {{"cityjson/", "the same content as CityJSON 2.0 text sequences, at LoD3 with every detail"}},
       .asked = [](const OutputOptions& o) { return o.writes("cityjson") || o.single_cityjson; },
-      .bytes_per_building =
+      .size =
           [](const OutputOptions& o, std::size_t lod) {
-            constexpr double kBytes[] = {1500, 2000, 3500, 3500};
-            const double sequence = o.gzip ? kBytes[lod] / 5 : kBytes[lod];
-            return (o.writes("cityjson") ? sequence : 0) + (o.single_cityjson ? kBytes[lod] : 0);
+            constexpr double kBytes[] = {1500, 2000, 3900, 3900}, kPerWall = 65;
+            const double less = o.gzip ? 5 : 1, wall = lod >= 3 ? kPerWall : 0;
+            OutputSize size;
+            if (o.writes("cityjson"))
+              size += {.per_building = kBytes[lod] / less, .per_wall = wall / less, .memory = 8e6};
+            if (o.single_cityjson) size += {.per_building = kBytes[lod], .per_wall = wall};
+            return size;
           },
       .takes_regions = [](const OutputOptions& o) { return o.single_cityjson; },
       .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<CityJsonOutput>(c); }};

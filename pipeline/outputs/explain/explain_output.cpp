@@ -93,7 +93,7 @@ OutputFormat explain_output() {
           .in_formats = false,
           .manual = {{"explain/", "what 'blockrand explain' reads"}},
           .asked = [](const OutputOptions& o) { return o.explain; },
-          .bytes_per_building = [](const OutputOptions&, std::size_t) { return 2180.0; },
+          .size = [](const OutputOptions&, std::size_t) { return OutputSize{.per_building = 1980}; },
           .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<ExplainOutput>(c); }};
 }
 

@@ -145,7 +145,8 @@ OutputFormat geopackage_output() {
       .manual = {{kFile, "GeoPackage: footprints with every attribute, its source and its confidence"},
                  {kProject, "QGIS project of the GeoPackage: its layers in order, coloured and labelled"}},
       .asked = [](const OutputOptions& o) { return o.writes("gpkg"); },
-      .bytes_per_building = [](const OutputOptions&, std::size_t) { return 4800.0; },
+      .size = [](const OutputOptions&,
+                 std::size_t) { return OutputSize{.once = 600'000, .per_building = 6800, .memory = 15e6}; },
       .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<GeoPackageOutput>(c); }};
 }
 

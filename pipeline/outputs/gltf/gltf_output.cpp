@@ -307,11 +307,13 @@ OutputFormat gltf_output() {
           .manual = {{"tileset.json, tiles/",
                       "3D Tiles 1.1: one GLB per tile, with the attributes of every building as feature metadata"}},
           .asked = [](const OutputOptions& o) { return o.writes("gltf") || o.single_glb; },
-          .bytes_per_building =
+          .size =
               [](const OutputOptions& o, std::size_t lod) {
-                constexpr double kBytes = 3000, kWithFacade = 300'000;  // of a house whose windows are merged in
+                OutputSize size;
+                if (o.writes("gltf")) size += {.per_building = 2100, .per_wall = lod >= 3 ? 45.0 : 0, .memory = 8e6};
                 const bool merged = lod >= 3 && o.objects == Objects::building && o.instancing != Instancing::nodes;
-                return (o.writes("gltf") ? kBytes : 0) + (o.single_glb ? merged ? kWithFacade : kBytes : 0);
+                if (o.single_glb) size += {.per_building = 2100, .per_wall = lod < 3 ? 0.0 : merged ? 300.0 : 45.0};
+                return size;
               },
           .keeps_whole = [](const OutputOptions& o) { return o.single_glb; },
           .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<GltfOutput>(c); }};

@@ -87,7 +87,7 @@ OutputFormat imagery_output() {
       .manual = {{"imagery.json", "with --imagery: whether each image fits, and a receipt for every building"},
                  {"imagery.html, imagery/", "the largest corrections, and the images with all outlines, tile by tile"}},
       .asked = [](const OutputOptions& o) { return o.imagery; },
-      .bytes_per_building = [](const OutputOptions&, std::size_t) { return 1500.0; },
+      .size = [](const OutputOptions&, std::size_t) { return OutputSize{.per_building = 1500}; },
       .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<ImageryOutput>(c); }};
 }
 

@@ -74,7 +74,7 @@ OutputFormat report_json_output() {
       .places = {{"report.json", "every object that is not modelled as asked, with its reason"}},
       .manual = {{"report.json", "every object that was not modelled, and why; every fallback"}},
       .asked = [](const OutputOptions&) { return true; },
-      .bytes_per_building = [](const OutputOptions&, std::size_t) { return 300.0; },
+      .size = [](const OutputOptions&, std::size_t) { return OutputSize{.once = 30'000, .per_building = 40}; },
       .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<ReportJsonOutput>(c); }};
 }
 

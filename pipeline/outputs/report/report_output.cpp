@@ -257,7 +257,8 @@ OutputFormat report_output() {
                      {"plan.png",
                       "the neighbourhood from above: blocks, courtyards, walls in the colours of what they face"}},
           .asked = [](const OutputOptions& o) { return o.report; },
-          .bytes_per_building = [](const OutputOptions&, std::size_t) { return 450.0; },
+          .size = [](const OutputOptions&,
+                     std::size_t) { return OutputSize{.once = 4e6, .per_building = 450, .memory = 170e6}; },
           .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<ReportOutput>(c); }};
 }
 

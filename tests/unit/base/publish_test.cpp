@@ -76,6 +76,26 @@ TEST_F(Publish, FilesAppearUnderTheTargetAtTheEndOnly) {
   EXPECT_THAT(names(), UnorderedElementsAre("out"));
 }
 
+TEST_F(Publish, AFolderThatOnlyCountsLeavesNothing) {
+  {
+    StagedFolder folder((here / "deep/er/out").string(), false, {.counts_only = true});
+    const PublishedFile file = folder.write("tiles/15/a.glb", "abc");
+    EXPECT_EQ(file.bytes, 3u);
+    EXPECT_EQ(file.sha256, kSha256OfAbc);
+    StagedFile piecewise = folder.create("b.gml");
+    piecewise.append("ab");
+    piecewise.append("c");
+    EXPECT_EQ(piecewise.close().bytes, 3u);
+    EXPECT_GT(folder.free_bytes(), 0u);
+    EXPECT_THAT(names(), IsEmpty());
+  }
+  EXPECT_THAT(names(), IsEmpty());
+  make_build("old");
+  EXPECT_THAT(error_of<UsageError>([&] { StagedFolder(target, false, {.counts_only = true}); }), HasSubstr("--force"));
+  { StagedFolder over(target, true, {.counts_only = true}); }
+  EXPECT_EQ(slurp(target / "build.json"), "old");
+}
+
 TEST_F(Publish, ForeignFilesKeepAFolderFromBeingReplaced) {
   make_build("old");
   FolderKind kind;

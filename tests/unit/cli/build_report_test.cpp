@@ -55,8 +55,28 @@ TEST(BuildReport, SaysWhatBecameOfTheObjects) {
   EXPECT_THAT(text, ContainsRegex("duplicate +3 "));
   EXPECT_THAT(text, ContainsRegex("reported +100 "));
   EXPECT_THAT(text, ContainsRegex("LoD 2 +12,790\n  LoD 1 +8\n  LoD 0 +2\n"));
-  EXPECT_THAT(text, HasSubstr("6,511 buildings and parts/s, peak memory 512.3 MB"));
+  EXPECT_THAT(text, HasSubstr("\n2.0 s, peak memory 512.3 MB\n"));
   EXPECT_THAT(text, HasSubstr("123.5 MB in 45 files"));
+}
+
+TEST(BuildReport, GaugesForDevelopersAreAskedFor) {
+  run::BuildSummary s = summary();
+  s.store_bytes = 77'000'000;
+  s.tiles_in_flight = 6;
+  s.roofscape.mid_row = 10;
+  const std::string plain = build_report(options(), s), verbose = build_report(options(), s, true);
+  for (const char* gauge :
+       {"6,511 buildings and parts/s", "77.0 MB store, the rest 6 tiles in flight", "Sloped roofs in rows"}) {
+    EXPECT_THAT(plain, Not(HasSubstr(gauge)));
+    EXPECT_THAT(verbose, HasSubstr(gauge));
+  }
+}
+
+TEST(BuildReport, EndsWithHowToLookAtIt) {
+  EXPECT_TRUE(build_report(options(), summary()).ends_with("to look at it: blockrand view out/leipzig\n"));
+  run::BuildOptions o = options();
+  o.output = "my town's";
+  EXPECT_TRUE(build_report(o, summary()).ends_with("to look at it: blockrand view 'my town'\\''s'\n"));
 }
 
 TEST(BuildReport, GroupsCodesByWhatTheyMean) {

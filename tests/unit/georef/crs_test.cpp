@@ -114,5 +114,23 @@ TEST(OpenCrs, RefusesBallparkOperations) {
   EXPECT_THAT(refusal("EPSG:31468", {100, 30, 101, 31}), HasSubstr("ballpark"));
 }
 
+TEST(CheckCrs, TellsWithoutAPlaceWhatCanBeNone) {
+  const auto told = [](const char* code) {
+    try {
+      check_crs(code);
+    } catch (const base::UsageError& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  EXPECT_EQ(told("EPSG:25833"), "nothing");
+  EXPECT_EQ(told("EPSG:32760"), "nothing") << "whether it suits the place is said when that is known";
+  EXPECT_THAT(told("EPSG:99999"), testing::HasSubstr("unknown to PROJ"));
+  EXPECT_THAT(told("EPSG:4326"), testing::HasSubstr("not a projected system"));
+  EXPECT_THAT(told("EPSG:5773"), testing::HasSubstr("not a projected system")) << "heights alone";
+  EXPECT_THAT(told("EPSG:2263"), testing::HasSubstr("not in metres"));
+  EXPECT_THAT(told("EPSG:4326"), testing::HasSubstr("or leave --crs out: the UTM zone of the extract is chosen then"));
+}
+
 }  // namespace
 }  // namespace blockrand::georef

@@ -31,7 +31,7 @@ TEST(AllOutputs, EachIsWhole) {
     for (const std::string_view other : format.other_names) EXPECT_TRUE(names.insert(other).second) << other;
     EXPECT_THAT(format.manual, Not(IsEmpty())) << "the manual says nothing of its files";
     EXPECT_NE(format.asked, nullptr);
-    EXPECT_NE(format.bytes_per_building, nullptr);
+    EXPECT_NE(format.size, nullptr);
     EXPECT_NE(format.open, nullptr);
   }
 }
@@ -51,16 +51,18 @@ TEST(AllOutputs, FormatsAreThoseOfTheOption) {
 
 TEST(AllOutputs, DiskEstimateIsTheSumOfWhatIsAsked) {
   OutputOptions options = no_output();
-  const double always = bytes_per_building(options, 2);
+  const BuiltSize town{100, 20'000};
+  const double always = output_size(options, 2).bytes(town);
   for (const OutputFormat& format : all_outputs()) {
     if (!format.in_formats) continue;
     SCOPED_TRACE(format.name);
     options.formats = {std::string(format.name)};
-    for (const std::size_t lod : {0, 1, 2, 3}) EXPECT_GT(format.bytes_per_building(options, lod), 0) << lod;
-    EXPECT_DOUBLE_EQ(bytes_per_building(options, 2) - always, format.bytes_per_building(options, 2));
+    for (const std::size_t lod : {0, 1, 2, 3}) EXPECT_GT(format.size(options, lod).per_building, 0) << lod;
+    EXPECT_DOUBLE_EQ(output_size(options, 2).bytes(town) - always, format.size(options, 2).bytes(town));
+    EXPECT_EQ(format.size(options, 2).per_wall, 0) << "no windows without facades";
   }
   // A level beyond the table is the nearest one.
-  EXPECT_EQ(bytes_per_building(options, 4), bytes_per_building(options, 3));
+  EXPECT_EQ(output_size(options, 4).bytes(town), output_size(options, 3).bytes(town));
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ TEST(Configuration, KeepsItsOrder) {
 TEST(Configuration, ValuesHaveTheirJsonTypes) {
   BuildOptions options;
   nlohmann::json record = configuration(options);
-  EXPECT_EQ(record["lod"].dump(), "2");
+  EXPECT_EQ(record["lod"].dump(), "3");
   EXPECT_EQ(record["formats"].dump(), R"(["gltf","citygml","cityjson","gpkg"])");
   EXPECT_EQ(record["instancing"].dump(), "\"ext\"");
   EXPECT_EQ(record["bbox"].dump(), "null");
@@ -143,7 +143,7 @@ TEST(FirstDifference, OfSeveralTheOneThatShapesMost) {
   EXPECT_EQ(first_difference(fresh, options), "ground_height");
   options.seed = 7;
   EXPECT_EQ(first_difference(fresh, options), "seed");
-  options.lod = 3;
+  options.lod = 2;
   EXPECT_EQ(first_difference(fresh, options), "lod");
 }
 

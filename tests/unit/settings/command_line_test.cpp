@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 Settings build(std::vector<std::string> arguments) {
@@ -75,9 +76,30 @@ TEST(CommandLine, UnknownOptionsSuggestTheNearest) {
   EXPECT_EQ(build_error({"--somethingelse"}), "usage: unknown option --somethingelse. Try 'blockrand build --help'.");
   EXPECT_THAT(build_error({"-z"}), StartsWith("usage: unknown option -z. Try"));
   EXPECT_THAT(error_of([] {
-                read_command_line(kInfo, {"in.osm", "--gzip"});
+                read_command_line(kInfo, {"in.osm", "--force"});
               }),
-              AllOf(HasSubstr("unknown option --gzip"), HasSubstr("'blockrand info --help'")));
+              AllOf(HasSubstr("--force is an option of build, compare, districts, grammar, which info does not read"),
+                    HasSubstr("'blockrand info --help'")));
+}
+
+TEST(CommandLine, OptionsThatAnActionWouldNotReadAreTold) {
+  const CommandLine line = read_command_line(kGrammar, {"check", "a.cga", "--lot", "3x4"});
+  const std::vector<Reader> readers = {{"lot", {"run", "test"}}, {"seed", {"run"}}};
+  EXPECT_EQ(error_of([&] { refuse_unread(line, kGrammar, "check", readers); }),
+            "usage: --lot is read by grammar run and grammar test, not by grammar check. Try 'blockrand grammar --help'.");
+  EXPECT_EQ(error_of([&] { refuse_unread(line, kGrammar, "run", readers); }), "no error");
+}
+
+TEST(CommandLine, HelpOfACommandSaysWhatAnOptionIsToIt) {
+  EXPECT_THAT(option_help(kBuild), Not(HasSubstr("districts diff")));
+  EXPECT_THAT(option_help(kInfo), HasSubstr("of the build whose cost is told"));
+  EXPECT_THAT(option_help(kUpdate), Not(HasSubstr("nothing is written")));
+  // Each command of several that have an option hears of it, in one way or another, and of no other command.
+  for (const Option& o : options())
+    for (const auto& [commands, help] : o.help_of) {
+      EXPECT_EQ(commands & ~o.commands, 0u) << o.name << ": help for a command that does not have it";
+      EXPECT_FALSE(help.empty()) << o.name;
+    }
 }
 
 TEST(CommandLine, WrongValuesNameTheOption) {

@@ -39,10 +39,11 @@ TEST(DeclaredOptions, EveryMemberOfABuildIsOne) {
   EXPECT_EQ(of_outputs + set_by_the_build, member_count<outputs::OutputOptions>());
   const std::size_t of_imagery = observation::imagery_options().size();
   EXPECT_EQ(of_imagery, member_count<observation::ImageryOptions>());
-  EXPECT_EQ(own - of_outputs - of_imagery + 2 + 4 + stages.size(), member_count<run::BuildOptions>())
-      << "the options of the outputs are one member, those of the images another, and so are those of each stage; a "
-         "build's name is its region's, as are the earlier build and the settings that it had; whether it only looks "
-         "ahead is its caller's";
+  EXPECT_EQ(own - of_outputs - of_imagery + 2 + 5 + stages.size(), member_count<run::BuildOptions>())
+      << "the options of the outputs are one member, those of the images another, and so are those of each stage; the "
+         "earlier build and the settings that it had are its region's; whether it only looks ahead, or only counts, "
+         "and "
+         "what people call its input is its caller's";
 }
 
 TEST(DeclaredOptions, EveryMemberOfValidationIsOne) {

@@ -112,7 +112,7 @@ TEST(Manual, HasEveryOptionOfItsCommandsWithDefaultRangeAndKey) {
       if (c == '\n') c = ' ';
     return text;
   }();
-  EXPECT_THAT(flat, HasSubstr("Default: 2. Range: 0 to 3. Key: lod. Commands: build."));
+  EXPECT_THAT(flat, HasSubstr("Default: 3. Range: 0 to 3. Key: lod. Commands: build."));
   EXPECT_THAT(flat, HasSubstr("Key: report = false."));
   EXPECT_THAT(page(), HasSubstr(".TH BLOCKRAND 1 \"\" \"blockrand 1.2.3\""));
 }

@@ -134,7 +134,7 @@ TEST(Options, FlagsAreShownByTheNameThatChangesSomething) {
   EXPECT_EQ(shown_name(option("INPUT")), "INPUT");
   EXPECT_THAT(std::string(shown_help(option("report"))), HasSubstr("no report.html"));
   EXPECT_EQ(default_text(option("report")), "");
-  EXPECT_EQ(default_text(option("lod")), "2");
+  EXPECT_EQ(default_text(option("lod")), "3");
 }
 
 TEST(Options, CoordinateSystemsAreEpsgCodes) {

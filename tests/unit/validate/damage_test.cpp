@@ -48,6 +48,7 @@ class Damage : public testing::Test {
     options.input = (folder_ / "town.osm").string();
     options.output = out().string();
     options.configs = BLOCKRAND_SOURCE_DIR "/configs";
+    options.lod = 2;
     options.outputs.single_glb = options.outputs.single_cityjson = true;
     options.jobs = 1;
     base::Progress quiet;

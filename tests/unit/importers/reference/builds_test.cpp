@@ -131,6 +131,7 @@ void expect_same_in_all_formats(const fs::path& input, std::size_t least, bool g
   options.input = input.string();
   options.output = folder.string();
   options.configs = BLOCKRAND_SOURCE_DIR "/configs";
+  options.lod = 2;
   options.outputs.formats = {"gltf", "citygml", "cityjson"};
   options.outputs.report = options.outputs.explain = false;
   options.outputs.profile = outputs::AttributeProfile::all;  // people get rounded heights
