@@ -184,7 +184,7 @@ class View(BuildTest):
             self.assertIn(f'--port {port} is taken', taken.err)
             with served(self.out) as another:
                 self.assertNotEqual(port, another)
-        for wrong in ['0', '65536', 'x']:
+        for wrong in ['-1', '65536', 'x']:
             self.assertEqual(blockrand('view', self.out, '--port', wrong).code, 1)
 
     def test_what_is_no_build_is_told(self):

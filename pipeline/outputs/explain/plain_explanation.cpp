@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "pipeline/model/osm_keys.h"
 #include "pipeline/outputs/explain/place_words.h"
 #include "pipeline/outputs/explain/places.h"
 #include "pipeline/outputs/explain/plain_reasons.h"
@@ -207,8 +208,8 @@ class PlainText {
     const std::string name = j_.value("name", ""), address = addresses().first;
     if (!name.empty()) return address.empty() ? name : name + ", " + address;
     const std::string near = street();
-    const bool town_alone = !address.empty() && own_street().empty() && tag("addr:housenumber").empty() &&
-                            tag("addr:housename").empty() && address == j_.value("address", "");
+    const bool town_alone = !address.empty() && own_street().empty() && tag(model::osm_key::kAddrHousenumber).empty() &&
+                            tag(model::osm_key::kAddrHousename).empty() && address == j_.value("address", "");
     if (!address.empty() && !town_alone) {
       if (!own_street().empty() || j_.value("address", "").empty()) return address;
       const PlaceAddresses all = place_addresses(address + "; " + addresses().second);
@@ -225,16 +226,19 @@ class PlainText {
                                         : " (no address mapped)");
   }
 
-  std::string tag(const char* key) const { return j_.contains("tags") ? j_.at("tags").value(key, "") : std::string(); }
+  std::string tag(std::string_view key) const {
+    return j_.contains("tags") ? j_.at("tags").value(std::string(key), "") : std::string();
+  }
   /// Of its address, as mapped.
   std::string own_street() const {
-    const std::string street = tag("addr:street");
-    return street.empty() ? tag("addr:place") : street;
+    const std::string street = tag(model::osm_key::kAddrStreet);
+    return street.empty() ? tag(model::osm_key::kAddrPlace) : street;
   }
 
   /// Its own address, and those that doors and points in it add.
   std::pair<std::string, std::string> addresses() const {
-    const std::string street = own_street(), own = j_.value("address", ""), numbers = tag("addr:housenumber");
+    const std::string street = own_street(), own = j_.value("address", ""),
+                      numbers = tag(model::osm_key::kAddrHousenumber);
     AddressList list(own, street, numbers);
     if (j_.contains("edges"))
       for (const Json& e : j_.at("edges"))

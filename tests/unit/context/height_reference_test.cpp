@@ -102,8 +102,10 @@ TEST(HeightReference, RaisesByWhatPROJKnows) {
 
 TEST(GroundWarning, SaysByHowMuchHousesLieWrong) {
   // EGM96: 39.6 m in Berlin (NGA's calculator), about -29 m at San Francisco, -106 m at its lowest place, south of India.
-  EXPECT_THAT(ground_warning({13.40, 52.52}), HasSubstr("will lie 40 m below the sea level of the place, so at least that far"));
-  EXPECT_THAT(ground_warning({-122.42, 37.77}), ::testing::ContainsRegex("will lie 3[0-9] m above the sea level of the place"));
+  EXPECT_THAT(ground_warning({13.40, 52.52}),
+              HasSubstr("will lie 40 m below the sea level of the place, so at least that far"));
+  EXPECT_THAT(ground_warning({-122.42, 37.77}),
+              ::testing::ContainsRegex("will lie 3[0-9] m above the sea level of the place"));
   EXPECT_THAT(ground_warning({78.75, 4.75}), ::testing::ContainsRegex("will lie 10[0-9] m above the sea level"));
   EXPECT_THAT(ground_warning({13.40, 52.52}), HasSubstr("Give --ground-height or --terrain"));
   EXPECT_THAT(ground_warning({13.40, 52.52}), HasSubstr("how high the ground itself is, nothing says"));

@@ -75,18 +75,20 @@ TEST(CommandLine, UnknownOptionsSuggestTheNearest) {
   EXPECT_THAT(build_error({"--job=3"}), StartsWith("usage: unknown option --job. Did you mean --jobs?"));
   EXPECT_EQ(build_error({"--somethingelse"}), "usage: unknown option --somethingelse. Try 'blockrand build --help'.");
   EXPECT_THAT(build_error({"-z"}), StartsWith("usage: unknown option -z. Try"));
-  EXPECT_THAT(error_of([] {
-                read_command_line(kInfo, {"in.osm", "--force"});
-              }),
-              AllOf(HasSubstr("--force is an option of build, compare, districts, grammar, which info does not read"),
-                    HasSubstr("'blockrand info --help'")));
+  EXPECT_THAT(
+      error_of([] {
+        read_command_line(kInfo, {"in.osm", "--force"});
+      }),
+      AllOf(HasSubstr("--force is an option of build, compare, districts, grammar, view, which info does not read"),
+            HasSubstr("'blockrand info --help'")));
 }
 
 TEST(CommandLine, OptionsThatAnActionWouldNotReadAreTold) {
   const CommandLine line = read_command_line(kGrammar, {"check", "a.cga", "--lot", "3x4"});
   const std::vector<Reader> readers = {{"lot", {"run", "test"}}, {"seed", {"run"}}};
-  EXPECT_EQ(error_of([&] { refuse_unread(line, kGrammar, "check", readers); }),
-            "usage: --lot is read by grammar run and grammar test, not by grammar check. Try 'blockrand grammar --help'.");
+  EXPECT_EQ(
+      error_of([&] { refuse_unread(line, kGrammar, "check", readers); }),
+      "usage: --lot is read by grammar run and grammar test, not by grammar check. Try 'blockrand grammar --help'.");
   EXPECT_EQ(error_of([&] { refuse_unread(line, kGrammar, "run", readers); }), "no error");
 }
 
@@ -118,7 +120,7 @@ TEST(CommandLine, CommandsHavePositionalArgumentsOfTheirOwn) {
   EXPECT_EQ(s.id, "w123");
   EXPECT_TRUE(s.json);
   EXPECT_THAT(error_of([] { read_command_line(kExplain, {"out"}); }),
-              AllOf(HasSubstr("no ID is given"), HasSubstr("'blockrand explain --help'")));
+              AllOf(HasSubstr("no building is named"), HasSubstr("'blockrand explain --help'")));
   EXPECT_THAT(error_of([] { read_command_line(kValidate, {}); }), HasSubstr("no FOLDER is given"));
   EXPECT_THAT(error_of([] { read_command_line(kValidate, {"out", "w1"}); }), HasSubstr("unexpected argument w1"));
 }
