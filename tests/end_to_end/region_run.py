@@ -125,7 +125,7 @@ class RegionTest(BuildTest):
     def region(self, name, settings=LIMITS_OFF):
         """A region with its region.toml; of LoD 2 where that does not say another one."""
         if 'lod = ' not in settings:
-            settings = settings.replace('[build]\n', '[build]\nlod = 2\n', 1) if '[build]\n' in settings else settings + '[build]\nlod = 2\n'
+            settings = settings.replace('[build]\n', '[build]\nlod = 2\n', 1) if '[build]\n' in settings else '[build]\nlod = 2\n' + settings
         folder = self.path(name)
         shutil.rmtree(folder, ignore_errors=True)
         os.makedirs(folder)

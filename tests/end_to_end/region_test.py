@@ -218,10 +218,10 @@ class Gates(RegionTest):
     def test_settings_that_differ_are_told(self):
         folder = self.region('told', LIMITS_OFF)
         self.update(folder, SAMPLE)
-        with open(os.path.join(folder, 'region.toml'), 'a', encoding='utf-8') as f:
-            f.write('[build]\nlod = 1\n')
+        with open(os.path.join(folder, 'region.toml'), 'w', encoding='utf-8') as f:
+            f.write('[build]\nlod = 1\n' + LIMITS_OFF)
         self.update(folder)
-        self.assertEqual(read_json(folder, 'log', '000002.changes.json')['settings'], {'removed': [], 'added': ['[build]', 'lod = 1']})
+        self.assertEqual(read_json(folder, 'log', '000002.changes.json')['settings'], {'removed': ['lod = 2'], 'added': ['lod = 1']})
 
     def test_a_hook_is_called_whatever_happens(self):
         told = self.path('told.txt')

@@ -107,7 +107,7 @@ std::optional<Outline> outline_of(const footprints::FootprintStore& store, std::
 }
 
 /// m around the densest spot: its picture shows what stands behind it as well.
-constexpr double kPicturedReach = kDetailReach + 35;
+constexpr double kPicturedReach = kDetailReach + 20;
 
 bool has_detail(const model::BuildingPart& part) { return part.lod >= 3 && !part.lod3.solid.empty(); }
 
@@ -285,7 +285,7 @@ PicturePlan plan_pictures(std::span<const footprints::Shard> shards, const footp
 }
 
 PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, std::size_t shard) {
-  PictureTile tile{picture::Scene(plan.origin), {}, picture::Scene(plan.origin)};
+  PictureTile tile{picture::Scene(plan.origin), {}, picture::Scene(plan.origin), picture::Scene(plan.origin)};
   if (!plan.chosen[shard]) return tile;
   DetailPainter painter(region);
   for (const model::Building& building : region.buildings) {
@@ -299,7 +299,7 @@ PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, s
       if (solid.empty()) continue;
       tile.scene.add(solid, with_roof ? part.lod2_triangles : part.lod1_triangles, object);
       for (const Point3& p : solid.vertices) pictured.box.include(p);
-      if (has_detail(part)) painter.add_flat(part, object, tile.scene);
+      if (has_detail(part)) painter.add_flat(part, object, tile.flat);
     }
     if (pictured.box.empty) continue;
     const Point3 centre = pictured.box.centre();
@@ -315,6 +315,7 @@ PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, s
 
 void Pictures::add(PictureTile&& tile) {
   scene_.append(tile.scene, static_cast<std::uint32_t>(buildings_.size()));
+  flat_.append(tile.flat, static_cast<std::uint32_t>(buildings_.size()));
   detail_.append(tile.detail, static_cast<std::uint32_t>(buildings_.size()));
   buildings_.insert(buildings_.end(), tile.buildings.begin(), tile.buildings.end());
 }
@@ -375,9 +376,9 @@ std::vector<outputs::ReportPicture> Pictures::take(int workers, const base::Memo
   if (buildings_.empty()) return {};
   auto out = base::remembered<std::vector<outputs::ReportPicture>>(
       memo, "pictures",
-      [&](base::Packer& packer) { packer << scene_ << detail_ << buildings_ << plan_.spot << attribution; },
+      [&](base::Packer& packer) { packer << scene_ << flat_ << detail_ << buildings_ << plan_.spot << attribution; },
       [&] { return shoot(workers, attribution); });
-  scene_ = detail_ = picture::Scene(plan_.origin);
+  scene_ = flat_ = detail_ = picture::Scene(plan_.origin);
   buildings_ = {};
   return out;
 }
@@ -413,7 +414,10 @@ std::vector<outputs::ReportPicture> Pictures::shoot(int workers, std::string_vie
   std::vector<bool> in_detail;
   for (const PicturedBuilding& b : buildings_) in_detail.push_back(b.detailed);
   const bool detailed = !detail_.empty();
-  detail_.append(scene_.without(in_detail));  // now all that the last picture shows
+  // Bodies alone take light of the sky away: their windows would be drawn a hundred times for nothing.
+  flat_.append(scene_);
+  const picture::Scene& all = flat_;
+  if (detailed) detail_.append(all.without(in_detail));  // now all that the last picture shows
 
   out.resize(shots.size());
   base::ordered_parallel(
@@ -421,8 +425,7 @@ std::vector<outputs::ReportPicture> Pictures::shoot(int workers, std::string_vie
       [&](std::size_t i) {
         const Shot& shot = shots[i];
         const bool close = i + 1 == shots.size();
-        picture::Image image =
-            picture::render(close && detailed ? detail_ : scene_, shot.camera, shot.options, &scene_);
+        picture::Image image = picture::render(close && detailed ? detail_ : all, shot.camera, shot.options, &scene_);
         picture::sign(image, attribution);
         out[i] = {picture::png(image), shot.options.width, shot.options.height, shot.caption};
       },

@@ -49,9 +49,10 @@ struct PicturedBuilding {
 };
 
 struct PictureTile {
-  picture::Scene scene;
+  picture::Scene scene;                     ///< bodies
   std::vector<PicturedBuilding> buildings;  ///< object k of the scenes is buildings[k]
-  picture::Scene detail;                    ///< of buildings at the densest spot: all of LoD3
+  picture::Scene flat;    ///< windows and doors as flat pieces a little before the walls, what stands on roofs
+  picture::Scene detail;  ///< of buildings at the densest spot: all of LoD3
 };
 
 /// The bodies of a finished tile, with windows and doors as flat pieces of their walls where it has any; empty for a tile that is not pictured. Pure: safe for different tiles at the same
@@ -62,7 +63,8 @@ PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, s
 /// Collects tiles and takes the pictures: an overview, the same from the other side, and the densest spot.
 class Pictures {
  public:
-  explicit Pictures(const PicturePlan& plan) : plan_(plan), scene_(plan.origin), detail_(plan.origin) {}
+  explicit Pictures(const PicturePlan& plan)
+      : plan_(plan), scene_(plan.origin), flat_(plan.origin), detail_(plan.origin) {}
 
   /// Takes a tile; call in tile order.
   void add(PictureTile&& tile);
@@ -79,7 +81,7 @@ class Pictures {
   void lay_ground();
   std::vector<outputs::ReportPicture> shoot(int workers, std::string_view attribution);
   PicturePlan plan_;
-  picture::Scene scene_, detail_;
+  picture::Scene scene_, flat_, detail_;
   std::vector<PicturedBuilding> buildings_;
 };
 

@@ -155,9 +155,9 @@ TEST(Pictures, ShowWindowsAndNearTheSpotEveryElement) {
     for (const model::BuildingPart& part : b.parts)
       for (const model::Opening& o : part.lod3.openings) windows += o.kind == model::OpeningKind::window;
   EXPECT_GT(windows, 100u);
-  EXPECT_EQ(pane(tile.scene, true), 3 * windows);
+  EXPECT_EQ(pane(tile.flat, true), 3 * windows);
   EXPECT_GE(pane(tile.detail, false), 3 * windows);
-  EXPECT_GT(tile.detail.triangle_count(), 2 * tile.scene.triangle_count());
+  EXPECT_GT(tile.detail.triangle_count(), 2 * tile.flat.triangle_count());
 
   Pictures with(plan);
   with.add(picture_tile(town.region(), plan, 0));
