@@ -15,12 +15,13 @@
 #include "pipeline/outputs/explain/place_words.h"
 #include "pipeline/outputs/explain/places.h"
 #include "pipeline/outputs/explain/plain_reasons.h"
+#include "pipeline/outputs/explain/plain_values.h"
 #include "pipeline/outputs/explain/plain_words.h"
 
 namespace blockrand::outputs {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using namespace plain;
 
 constexpr std::size_t kMostReasons = 3, kMostNotes = 3, kMostStreets = 3;
 /// m: smaller moves of corners are told in centimetres.
@@ -31,126 +32,6 @@ constexpr double kAsMapped = 0.05;
 constexpr double kWithinOne = 85;
 /// The fourth digit of an area says nothing.
 constexpr double kThreeDigits = 1000;
-
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-
-std::string capitalised(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
-}
-
-/// "24.6" of 24.60, "6" of 6.0: as a mapper writes it.
-std::string as_mapped(double value) {
-  std::string text = fmt::format("{:.2f}", value);
-  while (text.ends_with('0')) text.pop_back();
-  if (text.ends_with('.')) text.pop_back();
-  return text;
-}
-
-std::string whole(double value) { return fmt::format("{:.0f}", std::max(1.0, std::round(value))); }
-
-const Json* attribute_of(const Json& attributes, std::string_view name) {
-  for (const Json& a : attributes)
-    if (a.value("name", "") == name) return &a;
-  return nullptr;
-}
-
-/// The number behind `before` in a text: 92 of "within one storey 92 %" behind "within one storey ".
-double number_behind(std::string_view text, std::string_view before) {
-  const std::size_t at = text.find(before);
-  double value = -1;
-  if (at != std::string_view::npos) std::from_chars(text.data() + at + before.size(), text.data() + text.size(), value);
-  return value;
-}
-
-/// 13334 → "13300".
-std::string three_digits(double value) {
-  const double step = std::pow(10, std::floor(std::log10(value)) - 2);
-  return fmt::format("{:.0f}", std::round(value / step) * step);
-}
-
-/// m, of one storey: "2.8", "7".
-std::string storey_height(double value) { return as_mapped(std::round(10 * value) / 10); }
-
-std::string link_of(const std::string& id) {
-  if (id.size() < 2 || id[1] == '-') return {};
-  const std::string_view kind = id[0] == 'n' ? "node" : id[0] == 'w' ? "way" : "relation";
-  return fmt::format("https://www.openstreetmap.org/{}/{}", kind, id.substr(1));
-}
-
-/// What a reason means of an object that is not in the model, without a full stop.
-std::string reported_words(const std::string& code, std::string meaning) {
-  if (const std::string_view words = consequence_words(code); !words.empty()) return std::string(words);
-  if (meaning.ends_with('.')) meaning.pop_back();
-  return meaning;
-}
-
-/// What to do about an object that is not in the model.
-std::string remedy_words(const std::string& state, const std::string& code) {
-  if (state != "reported")
-    return "To change it: if it is a house of its own, correct its outline in OpenStreetMap and build again.";
-  if (code == "OUTLINE_INCOMPLETE")
-    return "To change it: cut a larger piece out of the map, so that the whole house lies in it.";
-  if (code == "NODE_ONLY") return "To change it: draw its outline in OpenStreetMap; a point has no shape.";
-  if (code == "LIFECYCLE" || code == "UNDERGROUND")
-    return "To change it: if that is no longer so, correct its tags in OpenStreetMap and build again.";
-  return "To change it: correct it in OpenStreetMap and build again.";
-}
-
-/// The attributes of one building or body, asked for by name.
-class Values {
- public:
-  explicit Values(const Json& attributes) : attributes_(attributes) {}
-
-  const Json* find(std::string_view name) const { return attribute_of(attributes_, name); }
-  double number(std::string_view name, double otherwise = 0) const {
-    const Json* a = find(name);
-    return a && a->at("value").is_number() ? a->at("value").get<double>() : otherwise;
-  }
-  std::string text(const char* name) const {
-    const Json* a = find(name);
-    return a && a->at("value").is_string() ? a->at("value").get<std::string>() : std::string();
-  }
-  std::string source(std::string_view name) const {
-    const Json* a = find(name);
-    return a ? a->value("source", "") : std::string();
-  }
-  std::string why(std::string_view name) const {
-    const Json* a = find(name);
-    return a ? a->value("why", "") : std::string();
-  }
-  double confidence(std::string_view name) const {
-    const Json* a = find(name);
-    return a ? a->value("confidence", 0.0) : 0.0;
-  }
-  std::string_view sureness(std::string_view name) const { return confidence_word(confidence(name)); }
-  bool is_known(std::string_view name) const {
-    const std::string s = source(name);
-    return s == "tag" || s == "override";
-  }
-  /// "as mapped", "as you ordered"; else empty.
-  std::string given(std::string_view name) const {
-    const std::string s = source(name);
-    return s == "tag" ? "as mapped" : s == "override" ? "as you ordered" : "";
-  }
-
- private:
-  const Json& attributes_;
-};
-
-/// Where a value comes from that nobody gave, without how sure it is.
-std::string origin(const std::string& source) {
-  if (source == "implied") return "follows from what else is mapped";
-  if (source == "part") return "from its parts";
-  if (source == "imagery") return "seen in the aerial image";
-  if (source == "terrain") return "from the terrain model";
-  if (source == "geometry") return "judged by its outline, its use and its surroundings";
-  if (source == "neighbours") return "like houses near it";
-  if (source == "block" || source == "cell" || source == "district" || source == "region")
-    return "usual in this part of town";
-  if (source == "preset") return "usual for such buildings";
-  return "assumed, as nothing is known";
-}
 
 class PlainText {
  public:
