@@ -140,6 +140,14 @@ std::string printable(const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto c = static_cast<unsigned char>(text[i]);
     const bool second_control = c == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
+    // Marks that turn the direction of what follows, and separators of lines: a line could be shown reversed.
+    if (const std::string_view three = std::string_view(text).substr(i, 3);
+        (three >= "\xE2\x80\x8E" && three <= "\xE2\x80\x8F") || (three >= "\xE2\x80\xA8" && three <= "\xE2\x80\xAE") ||
+        (three >= "\xE2\x81\xA6" && three <= "\xE2\x81\xA9")) {
+      out += "\xEF\xBF\xBD";
+      i += 2;
+      continue;
+    }
     if (c < 0x20 || c == 0x7F || second_control) {
       out += "\xEF\xBF\xBD";
       i += second_control;
@@ -450,6 +458,8 @@ int run_explain(const std::vector<std::string>& arguments) {
     throw base::UsageError(fmt::format("{} is no id of an OpenStreetMap object. Write {} for a way, {} for a relation.",
                                        s.id, s.id.empty() ? "w123" : "w" + s.id, s.id.empty() ? "r45" : "r" + s.id));
   auto id = outputs::parse_object_id(s.id);
+  // "St. Nikolai" has a point as well.
+  const bool is_body = id && s.id.find('.') != std::string::npos && s.id.find('/') == std::string::npos;
   if (!id) {
     id = id_by_address(s.folder, s.id);
     if (!id) return kInvalidInput;
@@ -460,7 +470,6 @@ int run_explain(const std::vector<std::string>& arguments) {
     throw base::InputError(s.folder, "", "knows no building or building part " + id->text(),
                            "It is tagged otherwise, or lies outside of the extract or the --bbox");
   if (!s.chip.empty()) write_chip(s.folder, *found, s.chip);
-  const bool is_body = s.id.find('.') != std::string::npos && s.id.find('/') == std::string::npos;
   if (s.json)
     std::printf("%s\n", found->json.c_str());
   else if (s.all || s.edges || s.style)

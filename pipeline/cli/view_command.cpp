@@ -5,7 +5,9 @@
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <cstdio>
 #include <thread>
 
@@ -25,25 +27,34 @@ namespace {
 constexpr int kUsualPort = 8712;
 
 /// SIGINT, SIGTERM and SIGHUP, unless the caller's environment ignores them: blocked here and in every thread to come.
-sigset_t take_over_signals() {
-  sigset_t watched;
-  sigemptyset(&watched);
+struct Signals {
+  sigset_t watched{}, before{};
+};
+Signals take_over_signals() {
+  Signals signals;
+  sigemptyset(&signals.watched);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction action {};
-    if (sigaction(number, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) sigaddset(&watched, number);
+    if (sigaction(number, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) sigaddset(&signals.watched, number);
   }
-  pthread_sigmask(SIG_BLOCK, &watched, nullptr);
-  return watched;
+  pthread_sigmask(SIG_BLOCK, &signals.watched, &signals.before);
+  return signals;
 }
 
-/// \returns whether the desktop took it
-bool open_in_browser(const std::string& url) {
-  std::string program = "xdg-open", address = url;
-  char* const arguments[] = {program.data(), address.data(), nullptr};
+/// Some desktops' opener is the browser itself: nobody waits for it but the thread that started it.
+void open_in_browser(std::string url, const sigset_t& before) {
+  std::string program = "xdg-open";
+  char* const arguments[] = {program.data(), url.data(), nullptr};
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setsigmask(&attributes, &before);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
   pid_t child = 0;
-  if (::posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ) != 0) return false;
   int status = 0;
-  return ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  const bool started = ::posix_spawnp(&child, program.c_str(), nullptr, &attributes, arguments, environ) == 0;
+  posix_spawnattr_destroy(&attributes);
+  if (!started || ::waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    std::fprintf(stderr, "blockrand: warning: no browser could be started: open %s yourself\n", url.c_str());
 }
 
 int bind(view::Server& server, int asked) {
@@ -100,26 +111,32 @@ int run_view(const std::vector<std::string>& arguments) {
   if (!s.site.empty() && (s.open || s.port > 0))
     throw base::UsageError(
         fmt::format("--export writes files and serves nothing: leave out {}", s.open ? "--open" : "--port"));
+  if (s.site.empty() && s.build.force)
+    throw base::UsageError("--force replaces what --export wrote: without --export nothing is written");
   const view::Site site(s.folder);
   site.description();  // a damaged build is told now, not by the page
   if (!s.site.empty()) {
     const view::ExportFigures figures = view::export_site(site, s.site, s.build.force);
     if (!s.quiet)
       tell(s, "site", s.site,
-           fmt::format("{}: {} files, {}. Any web server can serve it as it is.", s.site,
-                       base::with_thousands(figures.files), base::with_byte_unit(figures.bytes)));
+           fmt::format(
+               "{}: {} files, {}. It needs a web server, any will do; for a mail, report.html of the build is right.",
+               s.site, base::with_thousands(figures.files), base::with_byte_unit(figures.bytes)));
     return kSuccess;
   }
-  const sigset_t watched = take_over_signals();
+  const Signals signals = take_over_signals();
   view::Server server(site);
   const std::string url = fmt::format("http://127.0.0.1:{}/", bind(server, s.port));
-  std::thread([watched, &server] {
+  std::thread([watched = signals.watched, &server] {
     int number = 0;
-    if (sigwait(&watched, &number) == 0) server.stop();
+    if (sigwait(&watched, &number) != 0) return;
+    std::thread([&server] { server.stop(); }).detach();
+    // Clients may hold connections open for long. Nothing is written that could be left half done.
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    _exit(kSuccess);
   }).detach();
   tell(s, "url", url, fmt::format("{} is at {}\nCtrl-C ends it.", s.folder, url));
-  if (s.open && !open_in_browser(url))
-    std::fprintf(stderr, "blockrand: warning: no browser could be started: open %s yourself\n", url.c_str());
+  if (s.open) std::thread(open_in_browser, url, signals.before).detach();
   server.run();
   return kSuccess;
 }

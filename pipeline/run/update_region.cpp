@@ -209,6 +209,7 @@ class Updater {
     if (!plan.extract.empty() && plan.extract == options_.build.input) fresh.input = stamp_of(plan.extract);
     const bool new_settings = current && fresh.settings != before_.settings;
     if (new_settings) summary_.why.emplace_back("region.toml, rules or the program differ from the published build's");
+    if (current) warn_of_level(*current);
     summary_.number = region_.next();
 
     const bool nothing_came = current && plan.extract.empty() && plan.changes.empty();
@@ -380,6 +381,23 @@ class Updater {
   static std::string read_text(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  /// A newer program may have another level of detail where region.toml says none: nobody asked for the change that it makes.
+  void warn_of_level(int current) {
+    const auto configuration =
+        read_json(region_.build(current) + "/build.json").value("configuration", nlohmann::json());
+    if (!configuration.is_object() || !configuration.contains("lod") || configuration["lod"] == options_.build.lod)
+      return;
+    std::error_code error;
+    if (!fs::is_regular_file(region_.settings_of(current), error) ||
+        told_lines(region_.settings_of(current)) != told_lines(region_.settings()))
+      return;
+    progress_.warn(
+        fmt::format("the published build has LoD {}, and this program builds LoD {} where {} says nothing: write lod = "
+                    "{} there, below "
+                    "[build], to keep it",
+                    configuration["lod"].dump(), options_.build.lod, region_.settings(), configuration["lod"].dump()));
   }
 
   void diff_settings(std::optional<int> current) {

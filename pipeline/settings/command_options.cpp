@@ -306,7 +306,7 @@ Table of_messages() {
       messages,
       {choice({.name = "progress",
                .argument = "STYLE",
-               .commands = all | kCache,
+               .commands = all & ~kView,
                .help = "auto (bar on a terminal, else plain), bar, plain (lines) or none"},
               kProgressStyles, &S::progress),
        choice({.name = "log-format",

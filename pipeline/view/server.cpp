@@ -13,7 +13,7 @@ namespace blockrand::view {
 namespace {
 
 constexpr std::size_t kPiece = 1 << 20;  // bytes of a file in memory at a time
-constexpr std::size_t kThreads = 8;      // a browser opens six connections
+constexpr std::size_t kThreads = 32;     // a browser opens six connections, and holds them for a while
 
 /// The page loads nothing from elsewhere, and no page elsewhere may frame or read it. three.js makes pictures from blobs and its
 /// decoder is WebAssembly.
@@ -37,6 +37,8 @@ struct Server::State {
       const std::string origin = request.get_header_value("Origin");
       if (origin != "http://" + numbers && origin != "http://" + name) return false;
     }
+    for (const char* name : {"Origin", "Sec-Fetch-Site"})
+      if (request.get_header_value_count(name) > 1) return false;
     const std::string from = request.get_header_value("Sec-Fetch-Site");
     return from.empty() || from == "same-origin" || from == "none";
   }
@@ -93,6 +95,9 @@ Server::Server(const Site& site) : state_(std::make_unique<State>(site)) {
   });
   server.set_payload_max_length(1024);
   server.set_keep_alive_max_count(1000);
+  server.set_keep_alive_timeout(2);  // s
+  server.set_read_timeout(10);
+  server.set_write_timeout(30);
   server.set_default_headers({{"Content-Security-Policy", kPolicy},
                               {"X-Content-Type-Options", "nosniff"},
                               {"Cross-Origin-Resource-Policy", "same-origin"},
@@ -113,6 +118,9 @@ Server::Server(const Site& site) : state_(std::make_unique<State>(site)) {
       response.status = 400;
       return httplib::Server::HandlerResponse::Handled;
     }
+    // The library answers a range beyond the end with fewer bytes than it announces. The page asks for whole files, and who may have
+    // a part may be given all of it (RFC 9110, section 14.2).
+    const_cast<httplib::Request&>(request).ranges.clear();
     state_->answer(request, response);
     return httplib::Server::HandlerResponse::Handled;
   });

@@ -4,6 +4,9 @@
 //   view.json                 what is shown: name, level of detail, middle, where its files are
 //   model/…                   files of the build
 //   explained/<tile>.json     why its buildings look as they do, in plain words
+//
+// Of a region these two are model/000003/… and explained/000003/…: a page goes on with the build that it began with, whatever is
+// published meanwhile.
 #pragma once
 
 #include <memory>
@@ -27,8 +30,12 @@ struct Resource {
 class Site {
  public:
   /// \param folder  of a build, or of a region, whose published build is shown: that of the moment when view.json is asked for
+  /// \param name    for people; empty: that of the folder
   /// \throws base::UsageError  it is no build, or one without 3D Tiles
-  explicit Site(std::string folder);
+  explicit Site(std::string folder, std::string name = {});
+
+  /// The same for the build that is shown now, and no later one.
+  Site pinned() const;
 
   /// \param path  relative, decoded, without query; "" is the page
   /// \returns nothing where there is no such thing
@@ -41,8 +48,14 @@ class Site {
   std::string description() const;
 
  private:
-  std::string root() const;
-  std::string folder_;
+  /// A build, and what stands before its paths.
+  struct Shown {
+    std::string root, prefix;
+  };
+  Shown shown() const;
+  /// Takes the prefix off `path`. Nothing where it names no build of the region.
+  std::optional<std::string> root_of(std::string_view& path) const;
+  std::string folder_, name_;
 };
 
 }  // namespace blockrand::view

@@ -123,7 +123,7 @@ class Explain(BuildTest):
             if identity != building:
                 continue
             text = ' '.join(self.explained(self.out, identity).split())
-            found = re.search(r'or order it: ([nwr][0-9]+)[.]storeys = ([0-9.]+) ', text)
+            found = re.search(r'or write ([nwr][0-9]+)[.]storeys = ([0-9.]+) ', text)
             if found:
                 break
         else:

@@ -2,12 +2,12 @@
 import gzip
 import bz2
 import json
+import contextlib
 import os
 import pty
 import shutil
 import signal
 import subprocess
-import time
 
 from blockrand_run import SAMPLE, BuildTest, Setup, blockrand, files_of, main, read_json
 
@@ -94,11 +94,15 @@ class StandardInput(BuildTest):
     def test_nothing_stays_after_an_interruption(self):
         run = subprocess.Popen([Setup.program, 'build', '-', '-o', self.path('cut_off'), '--progress', 'none'], stdin=subprocess.PIPE,
                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-        run.stdin.write(sample_bytes()[:60000])
+        # More than a pipe holds: it is written when the program reads.
+        run.stdin.write(sample_bytes()[:60000] + b' ' * 300_000)
         run.stdin.flush()
-        time.sleep(0.5)
         run.send_signal(signal.SIGINT)
-        err = run.communicate()[1].decode()
+        run.wait(60)  # with its input open: what ends that way is no interruption
+        err = run.stderr.read().decode()
+        run.stderr.close()
+        with contextlib.suppress(BrokenPipeError):
+            run.stdin.close()
         self.assertEqual(run.returncode, 128 + signal.SIGINT, err)
         self.assertEqual([n for n in os.listdir(self.folder) if 'cut_off' in n or n.startswith('.')], [])
 

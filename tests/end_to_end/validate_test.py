@@ -101,7 +101,7 @@ class Sound(Validated):
     def test_no_build(self):
         self.refused(blockrand('validate', self.path('nowhere')), 1, 'does not exist')
         self.refused(blockrand('validate', self.folder), 1, 'build.json')
-        self.refused(blockrand('validate', SAMPLE), 1, 'no folder')
+        self.refused(blockrand('validate', SAMPLE), 1, 'is an extract, not a build')
 
     def test_text(self):
         out = self.build(SAMPLE, 'text')

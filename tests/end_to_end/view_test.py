@@ -12,6 +12,7 @@ import signal
 import socket
 import subprocess
 import threading
+import time
 
 from blockrand_run import SAMPLE, BuildTest, Setup, blockrand, files_of, main, read_json
 
@@ -71,7 +72,7 @@ class View(BuildTest):
                 self.assertEqual(ask(port, b'/' + name).status, 200, name)
             view = json.loads(ask(port, '/view.json').body)
             self.assertEqual(view['name'], 'viewed')
-            self.assertEqual(view['buildings'], read_json(self.out, 'build.json')['counts']['models'])
+            self.assertEqual(view['buildings'], read_json(self.out, 'build.json')['counts']['buildings'])
             self.assertIn('OpenStreetMap', view['attribution'])
             self.assertAlmostEqual(view['centre']['lon'], read_json(self.out, 'build.json')['region']['centre'][0], 2)
             for path in [view['tileset'], *view['places']]:
@@ -159,8 +160,10 @@ class View(BuildTest):
             first = ask(port, path)
             self.assertEqual(ask(port, path, headers={'If-None-Match': first.headers['etag']}).status, 304)
             self.assertEqual(ask(port, path, headers={'If-None-Match': '"other"'}).status, 200)
-            piece = ask(port, path, headers={'Range': 'bytes=4-7'})
-            self.assertEqual((piece.status, piece.body), (206, first.body[4:8]))
+            size = len(first.body)
+            for wanted in ['4-7', f'{size - 1}-{size + 300}', f'{size}-', '-0', '-']:
+                piece = ask(port, path, headers={'Range': f'bytes={wanted}'})
+                self.assertEqual((piece.status, piece.body), (200, first.body), wanted)
 
     def test_many_ask_at_once(self):
         with served(self.out) as port:
@@ -176,6 +179,34 @@ class View(BuildTest):
             for t in threads:
                 t.join()
             self.assertEqual(wrong, [])
+
+    def test_the_browser_that_it_starts_is_served(self):
+        tools = self.path('tools')
+        os.makedirs(tools, exist_ok=True)
+        with open(os.path.join(tools, 'xdg-open'), 'w', encoding='utf-8') as file:
+            file.write('#!/bin/sh\ngrep SigBlk /proc/self/status > "$BROWSER_SAW"\n'
+                       'python3 -c "import sys, urllib.request; print(len(urllib.request.urlopen(sys.argv[1]).read()))" "$1" >> "$BROWSER_SAW"\n')
+        os.chmod(os.path.join(tools, 'xdg-open'), 0o755)
+        saw = self.path('saw.txt')
+        os.environ.update(BROWSER_SAW=saw, PATH=tools + ':' + os.environ['PATH'])
+        with served(self.out, '--open'):
+            for _ in range(100):
+                if os.path.exists(saw) and len(open(saw, encoding='utf-8').read().split()) == 3:
+                    break
+                time.sleep(0.1)
+            name, blocked, size = open(saw, encoding='utf-8').read().split()
+        self.assertEqual(int(blocked, 16), 0, 'it can be ended')
+        self.assertGreater(int(size), 100)
+
+    def test_it_ends_while_clients_hold_it(self):
+        with served(self.out) as port:
+            held = [socket.create_connection(('127.0.0.1', port)) for _ in range(40)]
+            for connection in held:
+                connection.sendall(b'GET /view.json HTTP/1.1\r\nHost: ')
+            began = time.monotonic()
+        self.assertLess(time.monotonic() - began, 30)
+        for connection in held:
+            connection.close()
 
     def test_ports(self):
         with served(self.out) as port:
@@ -211,9 +242,21 @@ class View(BuildTest):
         with served(region) as port:
             view = json.loads(ask(port, '/view.json').body)
             self.assertEqual(view['name'], 'region')
-            self.assertEqual(ask(port, '/model/tileset.json').status, 200)
-            for hidden in ['/model/region.toml', '/model/../region.toml', '/model/current/tileset.json']:
+            self.assertEqual(ask(port, '/' + view['tileset']).status, 200)
+            for hidden in ['/model/region.toml', '/model/../region.toml', '/model/current/tileset.json', '/model/tileset.json',
+                           '/model/000009/tileset.json', '/model/000001', '/model/000001/', '/model/000001/../../region.toml']:
                 self.assertEqual(ask(port, hidden).status, 404, hidden)
+            # What is published meanwhile does not get into a page that is open.
+            with open(os.path.join(region, 'region.toml'), 'w', encoding='utf-8') as file:
+                file.write('[build]\nlod = 1\n')
+            self.assertEqual(blockrand('update', region).code, 0)
+            newer = json.loads(ask(port, '/view.json').body)
+            self.assertNotEqual(newer['tileset'], view['tileset'])
+            self.assertEqual((view['lod'], newer['lod']), (3, 1))
+            for name in files_of(os.path.join(region, 'builds', '000001'), '.glb'):
+                self.assertEqual(ask(port, '/model/000001/' + name).status, 200)
+            tile = files_of(os.path.join(region, 'builds', '000001', 'explain'), '.jsonl.gz')[0][:-len('.jsonl.gz')]
+            self.assertEqual(ask(port, f'/{view["explained"]}{tile}.json').status, 200)
 
     def test_an_export_is_the_same_site(self):
         site = os.path.join(self.folder, 'site')
@@ -223,6 +266,8 @@ class View(BuildTest):
         self.assertLess(PAGE, set(files))
         with served(self.out) as port:
             for path in files:
+                if path == 'files.txt':
+                    continue
                 with open(os.path.join(site, path), 'rb') as file:
                     self.assertEqual(ask(port, '/' + path).body, file.read(), path)
         self.assertEqual([f for f in files if f.endswith('.glb')], ['model/' + t for t in self.tiles])
@@ -233,8 +278,16 @@ class View(BuildTest):
         self.assertEqual(files_of(site), files)
         with open(os.path.join(site, 'notes.txt'), 'w', encoding='utf-8') as file:
             file.write('mine')
-        both = blockrand('view', self.out, '--export', site, '--open')
-        self.assertEqual(both.code, 1)
+        kept = blockrand('view', self.out, '--export', site, '--force')
+        self.assertEqual(kept.code, 1, kept)
+        self.assertIn('notes.txt', kept.err)
+        self.assertTrue(os.path.exists(os.path.join(site, 'notes.txt')))
+        for options in [['--export', site, '--open'], ['--force']]:
+            self.assertEqual(blockrand('view', self.out, *options).code, 1, options)
+        for place in [os.path.join(self.out, 'site'), os.path.join(self.out, 'tiles', 'deep', 'site'), self.out]:
+            inside = blockrand('view', self.out, '--export', place, '--force')
+            self.assertEqual(inside.code, 1, inside)
+        self.assertEqual(blockrand('validate', self.out).code, 0)
 
     def test_areas_are_one_site(self):
         areas = self.build(SAMPLE, 'areas', '--areas', '14')

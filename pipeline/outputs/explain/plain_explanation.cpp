@@ -198,8 +198,14 @@ class PlainText {
     const std::string use = v_.text("use");
     if (use.empty() || use == "yes") {
       const std::string rule = j_.contains("style") ? j_.at("style").value("rule", "") : "";
-      return rule.empty() ? "a building; the map does not say what it is used for"
-                          : "a small structure; the map does not say what it is used for";
+      // What stands in a key that no class of use is made of, such as a mosque's: the map says it all the same.
+      std::vector<std::string> called;
+      for (const std::string_view key : {model::osm_key::kAmenity, model::osm_key::kTourism, model::osm_key::kHistoric,
+                                         model::osm_key::kShop, model::osm_key::kOffice})
+        if (const std::string value = tag(key); !value.empty() && value != "yes") called.push_back(with_spaces(value));
+      return std::string(rule.empty() ? "a building" : "a small structure") +
+             (called.empty() ? "; the map does not say what it is used for"
+                             : fmt::format("; the map calls it {}", and_list(called)));
     }
     return with_article(use_words(use)) + (v_.given("use").empty() ? "" : ", " + v_.given("use"));
   }
@@ -302,7 +308,8 @@ class PlainText {
         line += "; that of its highest part";
       else if (v_.is_known("storeys"))
         line += fmt::format(
-            "; worked out from the mapped storeys, at {} m each, {} ({})", storey_height(v_.number("storey_height")),
+            "; worked out from the {} storeys, at {} m each, {} ({})",
+            v_.source("storeys") == "override" ? "ordered" : "mapped", storey_height(v_.number("storey_height")),
             v_.is_known("storey_height") ? "as mapped" : "as usual for such buildings", v_.sureness("height"));
       else if (source == "implied" || source == "neighbours" || source == "geometry" || source == "preset")
         line += fmt::format("; worked out from the storeys at about {} m each, so no surer than they are ({})",
@@ -625,6 +632,14 @@ class PlainText {
   };
 
   void to_change() {
+    if (has_parts()) {  // orders for the whole reach no part that says otherwise
+      const std::string page = link_of(id_);
+      out_.lines.push_back(fmt::format(
+          "To change it: it is modelled in parts; correct their tags {} and build again, or order their values "
+          "(build --overrides) by their ids, which --all lists.",
+          page.empty() ? "in OpenStreetMap" : "at " + page));
+      return;
+    }
     constexpr Changeable kAll[] = {{"storeys", "building:levels", "number of storeys"},
                                    {"roof_shape", "roof:shape", "shape of its roof"},
                                    {"height", "height", "height"}};
@@ -647,8 +662,9 @@ class PlainText {
                                                         : as_mapped(v_.number("storeys"));
     out_.lines.push_back(fmt::format("To change it: least is known of the {}. Add the tag {} {} and build again;",
                                      least->words, least->tag, where));
-    out_.lines.push_back(fmt::format("or order it: {}.{} = {} (write the true value) in a file for build --overrides.",
-                                     id_, attribute, value));
+    out_.lines.push_back(
+        fmt::format("or write {}.{} = {} with the true value into a file and give it to build --overrides.", id_,
+                    attribute, value));
   }
 
   const Json& j_;

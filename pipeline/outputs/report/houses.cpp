@@ -117,7 +117,10 @@ class CsvLine {
   CsvLine& text(std::string_view text) {
     std::string clean;
     const std::size_t first = text.find_first_not_of(" \t\r\n");
-    if (first != std::string_view::npos && std::string_view("=+-@").find(text[first]) != std::string_view::npos)
+    const std::string_view head = first == std::string_view::npos ? std::string_view() : text.substr(first, 3);
+    // The wide ones as well: \uFF1D \uFF0B \uFF0D \uFF20 (OWASP, CSV injection).
+    if (!head.empty() && (std::string_view("=+-@").find(head[0]) != std::string_view::npos || head == "\xEF\xBC\x9D" ||
+                          head == "\xEF\xBC\x8B" || head == "\xEF\xBC\x8D" || head == "\xEF\xBC\xA0"))
       clean = "'";
     append_clean(clean, text);
     return cell(clean);

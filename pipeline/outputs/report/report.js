@@ -14,7 +14,11 @@
   const ID = 0, ADDRESS = 1, NAME = 2, USE = 3, STOREYS = 4, STOREYS_FROM = 5, HEIGHT = 6, HEIGHT_FROM = 7, ROOF = 8, ROOF_FROM = 9,
     STYLE = 10, STYLE_FROM = 11, ERA = 12, AREA = 13, ROOF_AREA = 14, BLOCK = 15, X = 16, Y = 17;
   const houses = known.houses, by_id = new Map(houses.map(function (h) { return [h[ID], h]; }));
-  const texts = houses.map(function (h) { return (h[ID] + ' ' + h[ADDRESS] + ' ' + h[NAME] + ' ' + known.uses[h[USE]]).toLowerCase(); });
+  // As people write: without accents, with any spelling of "street".
+  const folded = function (text) {
+    return text.toLowerCase().normalize('NFD').replace(/\p{M}/gu, '').replaceAll('\u00df', 'ss').replace(/str(asse|\.)/g, 'str');
+  };
+  const texts = houses.map(function (h) { return folded(h[ID] + ' ' + h[ADDRESS] + ' ' + h[NAME] + ' ' + known.uses[h[USE]]); });
   const is_built = function (h) { return h[STOREYS] >= 0; };
   const page_of = function (id) {
     return id[1] === '-' ? '' : 'https://www.openstreetmap.org/' + { n: 'node', w: 'way', r: 'relation' }[id[0]] + '/' + id.slice(1);
@@ -299,7 +303,7 @@
     if (place) place.before(search); else table.parentElement.before(search);
     const HITS = 8;
     const look = function () {
-      const words = input.value.toLowerCase().split(/[\s,]+/).filter(function (w) { return w !== ''; });
+      const words = folded(input.value).split(/[\s,]+/).filter(function (w) { return w !== ''; });
       matches = words.length === 0 ? function () { return true; } : function (i) { return words.every(function (w) { return texts[i].includes(w); }); };
       filter();
       hits.replaceChildren();

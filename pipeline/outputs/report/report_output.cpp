@@ -10,6 +10,7 @@
 #include <map>
 #include <tuple>
 
+#include "pipeline/base/error.h"
 #include "pipeline/base/text.h"
 #include "pipeline/base/version.h"
 #include "pipeline/outputs/buildings_here.h"
@@ -219,12 +220,15 @@ class ReportOutput : public OutputOf<TileShare> {
     ViewRecord view;
     view.name = context_.name;
     view.lod = context_.lod;
-    view.buildings = build.counts.models;
+    view.buildings = build.statistics.buildings;
     view.attribution = attribution(context_);
     view.data_time = context_.data_time;
     const auto read = [&](const std::string& path) {
-      std::ifstream file(context_.folder.staging_path() + "/" + path, std::ios::binary);
-      return std::string(std::istreambuf_iterator<char>(file), {});
+      const std::string place = context_.folder.staging_path() + "/" + path;
+      std::ifstream file(place, std::ios::binary);
+      std::string content(std::istreambuf_iterator<char>(file), {});
+      if (!file.is_open() || file.bad()) throw base::OutputError(place + ": cannot be read back");
+      return content;
     };
     std::optional<std::string> files = embedded_view(build.files, read, std::move(view));
     if (!files) return std::nullopt;

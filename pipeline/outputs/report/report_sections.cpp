@@ -243,7 +243,7 @@ Values file_values(const ReportFacts& f) {
       {"buildings.csv", "Table of all buildings", "Excel, LibreOffice, any statistics program", false, 0, 0},
       {"buildings.gpkg", "GeoPackage", "any GIS: every attribute and its source", false, 0, 0},
       {"buildings.qgz", "QGIS project", "QGIS: the GeoPackage as a map, coloured and labelled", false, 0, 0},
-      {"explain/", "What <code>explain</code> reads", "blockrand explain", true, 0, 0},
+      {"explain/", "What blockrand explain reads", "blockrand explain", true, 0, 0},
       {"plan.png", "Plan", "any viewer of pictures", false, 0, 0},
       {"report.json", "Every report row", "any editor or script", false, 0, 0},
   };

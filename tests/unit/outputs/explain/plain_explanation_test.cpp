@@ -120,7 +120,7 @@ TEST(PlainExplanation, TellsAHouseInTenLines) {
   EXPECT_THAT(
       text,
       HasSubstr("least is known of the shape of its roof. Add the tag roof:shape at "
-                "https://www.openstreetmap.org/way/27 and build again;\nor order it: w27.roof_shape = \"berlin\""));
+                "https://www.openstreetmap.org/way/27 and build again;\nor write w27.roof_shape = \"berlin\""));
 }
 
 TEST(PlainExplanation, GuessedStoreysSayHowSureTheyAre) {
