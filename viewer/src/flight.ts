@@ -1,7 +1,7 @@
 // Moving above the houses: orbit by mouse, touch and keys, flights to a place, and what the camera looks at.
 import { MathUtils, PerspectiveCamera, Vector3 } from 'three';
 import { MapControls } from 'three/addons/controls/MapControls.js';
-import { Frame } from './frame';
+import type { Ground } from './ground';
 
 const KEY_STEP = 24; // pixels that a key moves the picture
 const FLIGHT = 1300; // ms
@@ -10,10 +10,13 @@ export class Flight {
   readonly controls: MapControls;
   private flight: { from: [Vector3, Vector3]; to: [Vector3, Vector3]; start: number; length: number } | null = null;
   private changed = true;
+  /** By the reader, ever. */
+  touched = false;
 
   constructor(
     readonly camera: PerspectiveCamera,
     private readonly canvas: HTMLElement,
+    private readonly ground: Ground,
   ) {
     this.controls = new MapControls(camera, canvas);
     Object.assign(this.controls, {
@@ -28,7 +31,10 @@ export class Flight {
     });
     this.controls.listenToKeyEvents(canvas);
     this.controls.addEventListener('change', () => (this.changed = true));
-    this.controls.addEventListener('start', () => (this.flight = null));
+    this.controls.addEventListener('start', () => {
+      this.flight = null;
+      this.touched = true;
+    });
     canvas.addEventListener('keydown', this.on_key);
   }
 
@@ -112,8 +118,8 @@ export class Flight {
       this.changed = true;
       if (t === 1) this.flight = null;
     }
-    if (this.enabled) this.controls.update();
-    const lowest = Frame.ground_at(this.camera.position.x, this.camera.position.z) + 1.5;
+    if (this.enabled) this.follow_ground(() => this.controls.update());
+    const lowest = this.ground.at(this.camera.position.x, this.camera.position.z) + 1.5;
     if (this.enabled && this.camera.position.y < lowest) {
       this.camera.position.y = lowest;
       this.changed = true;
@@ -121,6 +127,17 @@ export class Flight {
     const { changed } = this;
     this.changed = false;
     return changed;
+  }
+
+  /** Where the reader moves over hills, the camera goes up and down with the ground. */
+  private follow_ground(move: () => void): void {
+    const { x, z } = this.target;
+    move();
+    if (this.flight || (this.target.x === x && this.target.z === z)) return;
+    const rise = this.ground.above(this.target.x, this.target.z) - this.ground.above(x, z);
+    if (!rise) return;
+    this.target.y += rise;
+    this.camera.position.y += rise;
   }
 
   /** In a page that scrolls: wheel and finger are the page's until the picture has the focus. */

@@ -3,8 +3,9 @@
 import { Camera, Group, Matrix4, Mesh, Raycaster, Sphere, Vector3, WebGLRenderer } from 'three';
 import { TilesRenderer } from '3d-tiles-renderer/three';
 import type { Files } from './files';
-import type { Frame } from './frame';
+import { Frame } from './frame';
 import { Glb } from './glb';
+import type { Foot } from './ground';
 import { Cell, TileModel } from './tile_model';
 
 export interface Limits {
@@ -19,7 +20,7 @@ export interface Limits {
 export interface Hit {
   model: TileModel;
   row: number;
-  point: Vector3;
+  distance: number;
 }
 
 export class Model {
@@ -148,7 +149,7 @@ export class Model {
     const { geometry, userData } = first.object as Mesh;
     const model: TileModel = userData.model;
     const row = geometry.getAttribute('feature').getX(first.face.a);
-    return row < model.table.count ? { model, row, point: first.point } : null;
+    return row < model.table.count ? { model, row, distance: first.distance } : null;
   }
 
   /** The building among the loaded tiles, the finest first. */
@@ -182,6 +183,21 @@ export class Model {
     }
     middle.divideScalar(Math.max(1, parts)).setY(parts ? low : 0);
     return { foot: middle.applyMatrix4(this.matrix_of(model)), height: parts ? high - low : 10 };
+  }
+
+  /** Where a tile's buildings stand, in the page's frame. */
+  feet(model: TileModel): Foot[] {
+    const matrix = this.matrix_of(model);
+    return model.feet.map(({ box: [west, north, east, south], y }) => {
+      const at = new Vector3((west + east) / 2, y, (north + south) / 2).applyMatrix4(matrix);
+      return {
+        x: at.x,
+        z: at.z,
+        half_x: (east - west) / 2,
+        half_z: (south - north) / 2,
+        above: at.y - Frame.ground_at(at.x, at.z),
+      };
+    });
   }
 
   /** From the tile's frame to the page's, whether the tile hangs in the scene or not. */

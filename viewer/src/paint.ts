@@ -12,6 +12,8 @@ export const PAINT = {
   lamps: { value: 0 },
   /** Stripes of the chosen house per pixel of the picture. */
   hatching: { value: 1 / 14 },
+  /** Metres that walls go into the ground, where it is no plane. */
+  sunk: { value: 0 },
 };
 
 // Marks of a feature's texel: alpha. With colours, rgb is the square root of linear light, as in vertices.
@@ -21,6 +23,7 @@ const VERTEX_HEAD = /* glsl */ `
 attribute vec4 paint;
 attribute vec2 feature;
 uniform highp sampler2D features;
+uniform float sunk;
 varying vec3 v_paint;
 varying vec3 v_world;
 varying vec3 v_facing;
@@ -32,6 +35,7 @@ const VERTEX_BODY = /* glsl */ `
 v_paint = paint.rgb * paint.rgb;
 v_kind = floor(paint.a * 3.0 + 0.5);
 v_above = feature.y * 0.01;
+if (v_kind < 0.5 && feature.y < 0.5) transformed.y -= sunk;
 v_world = (modelMatrix * vec4(position, 1.0)).xyz;
 v_facing = mat3(modelMatrix) * normal;
 int texel = int(feature.x);

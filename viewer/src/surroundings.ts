@@ -17,6 +17,7 @@ import {
   WebGLRenderer,
 } from 'three';
 import { Frame } from './frame';
+import { Ground } from './ground';
 import { PAINT } from './paint';
 import type { SunPosition } from './sun';
 
@@ -29,6 +30,8 @@ const DAYLIGHT: [number, string, string, string, number, number, number][] = [
   [16, '#4d8fd2', '#dde7ec', '#ffe0b5', 2.7, 2.3, 0],
   [40, '#3f86cf', '#d3e4ef', '#fff3e2', 2.9, 2.6, 0],
 ];
+
+const GROUND = '#c9c6bb';
 
 const SKY_VERTEX = /* glsl */ `
 varying vec3 v_out;
@@ -60,6 +63,7 @@ export class Surroundings {
   private readonly direction = new Vector3(0, 1, 0);
   private readonly shadow_middle = new Vector3(Infinity, 0, 0);
   private shadow_reach = 0;
+  readonly ground = new Ground(GROUND);
 
   constructor(
     private readonly scene: Scene,
@@ -84,12 +88,12 @@ export class Surroundings {
     // Houses first, then what they leave free.
     sky.renderOrder = 2;
     sky.frustumCulled = false;
-    const ground = new Mesh(curved_disc(), new MeshLambertMaterial({ color: '#c9c6bb' }));
+    const ground = new Mesh(curved_disc(), new MeshLambertMaterial({ color: GROUND }));
     ground.receiveShadow = true;
     ground.renderOrder = 1;
     ground.position.y = -0.03;
     scene.fog = this.fog;
-    scene.add(sky, ground, this.sun, this.sun.target, this.skylight);
+    scene.add(sky, ground, this.ground.group, this.sun, this.sun.target, this.skylight);
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(shadow_pixels, shadow_pixels);
     this.sun.shadow.radius = 1.3;
@@ -137,7 +141,7 @@ export class Surroundings {
     const distance = camera.position.distanceTo(looked_at);
     this.fog.near = 350 + 1.6 * distance;
     this.fog.far = 4000 + 7 * distance;
-    const height = Math.max(2, camera.position.y - Frame.ground_at(camera.position.x, camera.position.z));
+    const height = Math.max(2, camera.position.y - this.ground.at(camera.position.x, camera.position.z));
     camera.near = Math.min(20, Math.max(0.15, height / 40));
     camera.far = 30000 + 20 * height;
     camera.updateProjectionMatrix();
@@ -169,6 +173,7 @@ export class Surroundings {
   }
 
   dispose(): void {
+    this.ground.dispose();
     this.sun.shadow.map?.dispose();
     this.scene.clear();
   }

@@ -54,7 +54,11 @@ export class TileModel {
   readonly rows_of = new Map<string, number[]>();
   /** The highest and lowest point and the middle of each feature, in the tile's frame: [x, y, z, top] each. */
   readonly extents: Float32Array;
+  /** Of each building: where it stands, [west, north, east, south], and its lowest point, in the tile's frame. */
+  readonly feet: { box: [number, number, number, number]; y: number }[] = [];
   private readonly bottoms: Float32Array;
+  /** Rows that reach down to the foot of their building: not a part that hangs above another. */
+  private readonly standing: Uint8Array;
   private readonly elements: Json[] = [];
   /** Of glTF meshes in `elements`. */
   private readonly numbers = new Map<number, number>();
@@ -83,6 +87,7 @@ export class TileModel {
     this.material = painted_material(this.features);
     this.extents = new Float32Array(4 * rows);
     this.bottoms = new Float32Array(rows).fill(Infinity);
+    this.standing = new Uint8Array(rows);
     for (let row = 0; row < this.table.count; ++row) {
       const building = this.table.text('building', row) || this.table.text('id', row);
       const known = this.rows_of.get(building);
@@ -211,14 +216,28 @@ export class TileModel {
         4 * row,
       );
     }
+    for (const rows_there of this.rows_of.values()) {
+      const box = [Infinity, Infinity, -Infinity, -Infinity] as [number, number, number, number];
+      const lowest = Math.min(...rows_there.map((row) => this.bottoms[row]!));
+      if (!Number.isFinite(lowest)) continue;
+      for (const row of rows_there) {
+        if (this.bottoms[row]! > lowest + 0.5) continue;
+        this.standing[row] = 1;
+        box[0] = Math.min(box[0], low[3 * row]!);
+        box[1] = Math.min(box[1], low[3 * row + 2]!);
+        box[2] = Math.max(box[2], high[3 * row]!);
+        box[3] = Math.max(box[3], high[3 * row + 2]!);
+      }
+      this.feet.push({ box, y: lowest });
+    }
     for (let v = 0; v < out.count; ++v)
       out.features[2 * v + 1] = this.above_foot(out.features[2 * v]!, out.positions[3 * v + 1]!);
   }
 
-  /** Centimetres above the feature's foot. */
+  /** Centimetres above the feature's foot; 0 only where that is the building's. */
   private above_foot(row: number, y: number): number {
     const foot = this.bottoms[row] ?? y;
-    return Math.max(0, Math.min(65535, Math.round(100 * (y - foot)))) || 0;
+    return Math.max(this.standing[row] ? 0 : 1, Math.min(65535, Math.round(100 * (y - foot)))) || 0;
   }
 
   // ---- windows and ornaments

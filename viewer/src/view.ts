@@ -28,6 +28,7 @@ import { SunCard } from './sun_card';
 import { Surroundings } from './surroundings';
 import { Walk } from './walk';
 
+const SUNK = 5; // m that walls go into hilly ground
 const MEGABYTE = 1 << 20;
 const CLICK = 6; // pixels and
 const CLICK_TIME = 500; // ms that a click may wander and last
@@ -124,8 +125,9 @@ export class View {
       this.software ? { error: 18, near: 70, bytes: 300 * MEGABYTE } : { error: 10, near: 140, bytes: 512 * MEGABYTE },
     );
     this.scene.add(this.model.tiles.group);
-    this.flight = new Flight(this.camera, page.canvas);
-    this.walk = new Walk(this.camera, page.canvas);
+    const { ground } = this.surroundings;
+    this.flight = new Flight(this.camera, page.canvas, ground);
+    this.walk = new Walk(this.camera, page.canvas, ground);
     this.legend = new Legend(page);
     this.sun = new SunCard(page, told.centre);
     this.places = new Places(files, told.places);
@@ -154,19 +156,21 @@ export class View {
     // `look` is for tests that fly about.
     return {
       ready: this.ready,
+      /** Height of the ground above the plane. */
+      ground: (x: number, z: number) => this.surroundings.ground.above(x, z),
       /** Milliseconds between the last pictures that followed each other. */
       frameTimes: () => [...this.times],
-      memory: () => ({ bytes: this.model.bytes, tiles: this.model.models.size }),
+      memory: () => ({ bytes: this.model.bytes + this.surroundings.ground.bytes, tiles: this.model.models.size }),
       state: () => this.state(),
       look: (x: number, z: number, distance: number, azimuth: number, altitude: number) =>
-        this.flight.look(new Vector3(x, Frame.ground_at(x, z), z), distance, azimuth, altitude, true),
+        this.flight.look(new Vector3(x, this.surroundings.ground.at(x, z), z), distance, azimuth, altitude, true),
     };
   }
 
   private state() {
     const { altitude, azimuth } = this.sun.position;
     return {
-      settled: this.model.settled && !this.flight.flying && !this.flight.moved && !this.dirty && this.sharp,
+      settled: this.model.settled && this.surroundings.ground.settled && !this.flight.flying && !this.flight.moved && !this.dirty && this.sharp,
       first_picture_ms: this.first_after,
       software: this.software,
       pictures: this.drawn,
@@ -176,6 +180,9 @@ export class View {
       walking: this.walk.active,
       camera: this.camera.position.toArray(),
       target: this.flight.target.toArray(),
+      /** Height under the camera. */
+      ground: this.surroundings.ground.at(this.camera.position.x, this.camera.position.z),
+      hilly: this.surroundings.ground.hilly,
       direction: this.camera.getWorldDirection(new Vector3()).toArray(),
       sun: { day: this.sun.day, minutes: this.sun.minutes, altitude, azimuth },
       shown: this.model.shown.map((model) => model.name),
@@ -208,6 +215,7 @@ export class View {
       this.legend_stale = true;
     };
     model.on_load = (tile) => {
+      this.surroundings.ground.add(model.feet(tile));
       paint_tile(tile, this.legend.mode, this.chosen);
       if (this.chosen && tile.rows_of.has(this.chosen)) void this.fill_panel();
     };
@@ -284,7 +292,10 @@ export class View {
       const ray = new Raycaster();
       ray.setFromCamera(at, this.camera);
       const hit = this.model.hit(ray);
-      this.choose(hit ? hit.model.building_of(hit.row) : null);
+      const { origin, direction } = ray.ray;
+      const reach = (hit?.distance ?? 0) - 2;
+      const seen = hit && this.surroundings.ground.free(origin, direction, reach) >= reach;
+      this.choose(seen ? hit.model.building_of(hit.row) : null);
     });
   }
 
@@ -332,7 +343,7 @@ export class View {
     if (found) {
       const { foot, height } = this.model.place(found.model, found.rows);
       this.flight.visit(foot, height, this.page.narrow);
-    } else if (place) this.flight.visit(this.frame.point(place.lon, place.lat, 0), place.height, this.page.narrow);
+    } else if (place) this.flight.visit(this.place_on_ground(place), place.height, this.page.narrow);
   }
 
   /** A house of the link may be anywhere: loaded already, or in the list of places. */
@@ -378,7 +389,7 @@ export class View {
 
   private overview(at_once: boolean): void {
     const sphere = this.placed ? this.model.sphere() : null;
-    const middle = new Vector3(0, 8, 0);
+    const middle = new Vector3(0, 8 + this.surroundings.ground.above(0, 0), 0);
     const distance = Math.min(900, Math.max(160, (sphere?.radius ?? 330) * 1.25));
     this.flight.look(middle, distance, 0.32, this.camera.aspect < 0.8 ? 0.6 : 0.38, at_once);
     this.dirty = true;
@@ -406,7 +417,7 @@ export class View {
       for (let i = 0; i < (ring ? 8 : 1) && tried < 5; ++i) {
         const angle = (i * Math.PI) / 4,
           at = new Vector3(near.x + 6 * ring * Math.cos(angle), 0, near.z + 6 * ring * Math.sin(angle));
-        ray.set(at.clone().setY(500), new Vector3(0, -1, 0));
+        ray.set(at.clone().setY(500 + this.surroundings.ground.at(at.x, at.z)), new Vector3(0, -1, 0));
         if (this.model.hit(ray)) continue;
         ++tried;
         const { room } = this.clear_view(at);
@@ -419,7 +430,7 @@ export class View {
 
   /** Where one sees farthest from a place, and how far the nearest wall is. */
   private clear_view(at: Vector3): { towards: Vector3; room: number } {
-    const eye = at.clone().setY(Frame.ground_at(at.x, at.z) + 2.2),
+    const eye = at.clone().setY(this.surroundings.ground.at(at.x, at.z) + 2.2),
       ray = new Raycaster();
     let farthest = -1,
       room = Infinity;
@@ -427,7 +438,7 @@ export class View {
     for (let i = 0; i < 12; ++i) {
       const direction = new Vector3(Math.cos((i * Math.PI) / 6), 0, Math.sin((i * Math.PI) / 6));
       ray.set(eye, direction);
-      const distance = Math.min(150, this.model.hit(ray)?.point.distanceTo(eye) ?? 150);
+      const distance = this.surroundings.ground.free(eye, direction, Math.min(150, this.model.hit(ray)?.distance ?? 150));
       room = Math.min(room, distance);
       if (distance > farthest) {
         farthest = distance;
@@ -498,7 +509,8 @@ export class View {
       this.placed = true;
       if (!this.chosen) this.overview(true);
     }
-    const { settled } = this.model;
+    if (this.surroundings.ground.update(this.focus, !this.model.settled)) this.ground_changed();
+    const settled = this.model.settled && this.surroundings.ground.settled;
     this.page.loading(!settled && this.page.failures.length === 0);
     const still = !moved && settled;
     if (!moved && !this.dirty && (this.sharp || !still)) {
@@ -525,6 +537,24 @@ export class View {
     this.last_frame = now;
     if (settled) this.update_legend();
     if (settled && this.placed && !this.first_picture) this.note_first_picture();
+  }
+
+  private get focus(): Vector3 {
+    return this.walk.active ? this.camera.position : this.flight.target;
+  }
+
+  private ground_changed(): void {
+    const { hilly } = this.surroundings.ground;
+    PAINT.sunk.value = hilly ? SUNK : 0;
+    // The first look was before anything told how high the ground is.
+    if (!this.first_picture && !this.chosen && !this.flight.touched) this.overview(true);
+    if (this.walk.active) this.walk.stand();
+    this.dirty = true;
+  }
+
+  private place_on_ground({ lon, lat }: PlaceLine): Vector3 {
+    const at = this.frame.point(lon, lat, 0);
+    return at.setY(at.y + this.surroundings.ground.above(at.x, at.z));
   }
 
   private note_first_picture(): void {

@@ -1,6 +1,6 @@
 // Walking through the streets at eye height: keys or buttons to go, the mouse or a finger to look, Escape to leave.
 import { Euler, PerspectiveCamera, Vector3 } from 'three';
-import { Frame } from './frame';
+import type { Ground } from './ground';
 
 const EYE = 1.7; // m
 const PACE = 4.2; // m/s, a brisk run; with shift three times as fast
@@ -28,6 +28,7 @@ export class Walk {
   constructor(
     private readonly camera: PerspectiveCamera,
     private readonly canvas: HTMLElement,
+    private readonly ground: Ground,
   ) {
     addEventListener('keydown', this.on_key);
     addEventListener('keyup', this.on_key_up);
@@ -43,7 +44,7 @@ export class Walk {
     this.active = true;
     this.turned = true;
     this.before = performance.now();
-    this.camera.position.set(at.x, Frame.ground_at(at.x, at.z) + EYE, at.z);
+    this.camera.position.set(at.x, this.ground.at(at.x, at.z) + EYE, at.z);
     this.look.set(0.03, Math.atan2(at.x - towards.x, at.z - towards.z), 0);
     this.canvas.focus();
     if (matchMedia('(pointer: fine)').matches) {
@@ -61,6 +62,11 @@ export class Walk {
     this.on_end();
   }
 
+  /** The ground changed. */
+  stand(): void {
+    this.turned = true;
+  }
+
   /** A button of the page that is held: 'KeyW' and its like. */
   hold(code: string, down: boolean): void {
     if (down) this.pressed.add(code);
@@ -72,7 +78,7 @@ export class Walk {
     const at = this.camera.position,
       x = at.x - Math.sin(this.look.y) * metres,
       z = at.z - Math.cos(this.look.y) * metres;
-    return new Vector3(x, Frame.ground_at(x, z), z);
+    return new Vector3(x, this.ground.at(x, z), z);
   }
 
   /** Walks on. True: the camera moved. */
@@ -94,7 +100,7 @@ export class Walk {
       cos = Math.cos(this.look.y);
     at.x += (-sin * forward + cos * right) * step;
     at.z += (-cos * forward - sin * right) * step;
-    at.y = Frame.ground_at(at.x, at.z) + EYE;
+    at.y = this.ground.at(at.x, at.z) + EYE;
     this.camera.quaternion.setFromEuler(this.look);
     return moved;
   }
