@@ -92,7 +92,8 @@ void Scene::set_ground(double z, Colour colour) { ground_ = Ground{z - origin_.z
 void Scene::append(const Scene& other, std::uint32_t first_object) {
   assert(origin_ == other.origin_);
   const std::size_t first = triangles_.size();
-  triangles_.reserve(first + other.triangles_.size());  // a scene of detail has 72 bytes a triangle, and many: no room to spare
+  triangles_.reserve(first +
+                     other.triangles_.size());  // a scene of detail has 72 bytes a triangle, and many: no room to spare
   triangles_.insert(triangles_.end(), other.triangles_.begin(), other.triangles_.end());
   for (std::size_t i = first; i < triangles_.size(); ++i) triangles_[i].object += first_object;
   if (!ground_) ground_ = other.ground_;

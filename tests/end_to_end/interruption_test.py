@@ -167,7 +167,7 @@ class FullDisk(InterruptionTest):
 
     def test_too_little_space_is_said_beforehand(self):
         """Free space is looked at before anything is written."""
-        with small_disk(self.path('small'), 'size=1200k') as disk:
+        with small_disk(self.path('small'), 'size=1700k') as disk:
             target = os.path.join(disk, 'out')
             old = blockrand('build', SAMPLE, '-o', target, '--lod', '2', '--bbox', '11.0290,51.4690,11.0300,51.4700', '--formats', 'gltf')
             self.assertEqual(old.code, 0, old)
@@ -194,7 +194,7 @@ class FullDisk(InterruptionTest):
 
     def test_disk_fills_up_meanwhile(self):
         """Another program takes the space after the check: ENOSPC in the middle of a write."""
-        with small_disk(self.path('filling'), 'size=400m') as disk:
+        with small_disk(self.path('filling'), 'size=900m') as disk:
             target = os.path.join(disk, 'out')
             self.assertEqual(blockrand('build', SAMPLE, '-o', target, '--lod', '2').code, 0)
             before = hashes(target)

@@ -111,7 +111,13 @@ class PageTest(BuildTest):
         for style in page.all(HTML + 'style'):
             self.assertNotRegex(style.text, r'url\(|@import|https?:')
         scripts = [s for s in page.all(HTML + 'script') if s.get('type') != 'application/json']
+        # The page's own, and the one that unpacks the model where it carries one: from what stands in the page.
+        model = [s for s in scripts if 'viewer-files' in s.text]
+        self.assertEqual(len(model), len([s for s in page.all(HTML + 'script') if s.get('id') == 'blockrand-embedded']))
+        scripts = [s for s in scripts if s not in model]
         self.assertEqual(len(scripts), 1)
+        for script in model:
+            self.assertNotRegex(script.text, r'fetch|XMLHttp|import|https?:')
         # A link to a house's page at openstreetmap.org is made when it is asked for.
         self.assertNotRegex(scripts[0].text.replace("'https://www.openstreetmap.org/'", '').replace("'http://www.w3.org/2000/svg'", ''),
                             r'fetch|XMLHttp|import|https?:')

@@ -60,7 +60,7 @@ class View(BuildTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.out = cls().build(SAMPLE, 'viewed')
+        cls.out = cls().build(SAMPLE, 'viewed', '--formats', 'gltf')
         cls.tiles = files_of(cls.out, '.glb')
 
     def test_the_page_finds_all_that_it_needs(self):
@@ -238,6 +238,9 @@ class View(BuildTest):
 
     def test_a_region_shows_what_it_publishes(self):
         region = os.path.join(self.folder, 'region')
+        os.makedirs(region)
+        with open(os.path.join(region, 'region.toml'), 'w', encoding='utf-8') as file:
+            file.write('[build]\nlod = 2\nformats = ["gltf"]\n')
         self.assertEqual(blockrand('update', region, SAMPLE).code, 0)
         with served(region) as port:
             view = json.loads(ask(port, '/view.json').body)
@@ -248,11 +251,11 @@ class View(BuildTest):
                 self.assertEqual(ask(port, hidden).status, 404, hidden)
             # What is published meanwhile does not get into a page that is open.
             with open(os.path.join(region, 'region.toml'), 'w', encoding='utf-8') as file:
-                file.write('[build]\nlod = 1\n')
+                file.write('[build]\nlod = 1\nformats = ["gltf"]\n')
             self.assertEqual(blockrand('update', region).code, 0)
             newer = json.loads(ask(port, '/view.json').body)
             self.assertNotEqual(newer['tileset'], view['tileset'])
-            self.assertEqual((view['lod'], newer['lod']), (3, 1))
+            self.assertEqual((view['lod'], newer['lod']), (2, 1))
             for name in files_of(os.path.join(region, 'builds', '000001'), '.glb'):
                 self.assertEqual(ask(port, '/model/000001/' + name).status, 200)
             tile = files_of(os.path.join(region, 'builds', '000001', 'explain'), '.jsonl.gz')[0][:-len('.jsonl.gz')]
@@ -290,7 +293,7 @@ class View(BuildTest):
         self.assertEqual(blockrand('validate', self.out).code, 0)
 
     def test_areas_are_one_site(self):
-        areas = self.build(SAMPLE, 'areas', '--areas', '14')
+        areas = self.build(SAMPLE, 'areas', '--areas', '14', '--formats', 'gltf')
         site = os.path.join(self.folder, 'areas_site')
         self.assertEqual(blockrand('view', areas, '--export', site).code, 0)
         view = read_json(site, 'view.json')

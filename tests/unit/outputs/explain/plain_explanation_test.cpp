@@ -117,10 +117,9 @@ TEST(PlainExplanation, TellsAHouseInTenLines) {
   EXPECT_THAT(text, HasSubstr("107 windows and 1 door, besides 3 balconies and 1 chimney; drawn by rules"));
   EXPECT_THAT(text, HasSubstr("Outline: as mapped, within 4 cm."));
   EXPECT_THAT(text, Not(HasSubstr("Simplified")));
-  EXPECT_THAT(
-      text,
-      HasSubstr("least is known of the shape of its roof. Add the tag roof:shape at "
-                "https://www.openstreetmap.org/way/27 and build again;\nor write w27.roof_shape = \"berlin\""));
+  EXPECT_THAT(text,
+              HasSubstr("least is known of the shape of its roof. Add the tag roof:shape at "
+                        "https://www.openstreetmap.org/way/27 and build again;\nor write w27.roof_shape = \"berlin\""));
 }
 
 TEST(PlainExplanation, GuessedStoreysSayHowSureTheyAre) {
