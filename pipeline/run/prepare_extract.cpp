@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
+#include <cmath>
 #include <utility>
 
 #include "importers/osm/read_extract.h"
@@ -12,6 +13,27 @@
 #include "pipeline/footprints/load.h"
 
 namespace blockrand::run {
+
+namespace {
+
+/// A coordinate system that was asked for may be made for another place: lengths and areas would be wrong, heights would not.
+/// UTM stays within 0.001 in its zone.
+constexpr double kToldScale = 0.002, kRefusedScale = 0.05;
+
+void check_scale(const georef::Projection& projection, const georef::Crs& crs, georef::LonLat centre,
+                 base::Progress& progress) {
+  const double scale = projection.grid_scale(centre.lon, centre.lat), off = std::fabs(scale - 1);
+  if (!(off > kToldScale)) return;
+  const std::string what = fmt::format("{}: a metre here is {:.3f} m long in it", crs.authority_code, scale);
+  const std::string better = georef::choose_crs(centre.lon, centre.lat);
+  if (off > kRefusedScale)
+    throw base::UsageError(
+        fmt::format("{}, so that houses would be {:.0f} % too {} for their heights. Leave out --crs, or take {}", what,
+                    100 * off, scale > 1 ? "wide" : "narrow", better));
+  progress.warn(fmt::format("{}: lengths are {:.1f} % off. {} fits better", what, 100 * off, better));
+}
+
+}  // namespace
 
 LocatedExtract locate_extract(const BuildOptions& options, const std::optional<TileChoice>& tile,
                               base::Progress& progress, const importers::osm::ExtractStore* store) {
@@ -56,6 +78,7 @@ LocatedExtract locate_extract(const BuildOptions& options, const std::optional<T
         "{}: positions do not come back within 1 mm here (error {:.4f} m, {} of {} sample points undefined). "
         "Choose another --crs, or leave it out",
         crs.authority_code, round_trip.projection_m, round_trip.undefined, round_trip.points));
+  if (!options.crs.empty() && area) check_scale(projection, crs, facts.centre, progress);
   return {std::move(extract), area, std::move(facts), crs, round_trip, std::move(projection)};
 }
 

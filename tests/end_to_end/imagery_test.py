@@ -212,7 +212,7 @@ class Imagery(BuildTest):
         self.assertEqual(read_json(alone, 'build.json')['imagery'], read_json(out, 'build.json')['imagery'])
         self.refused(blockrand('build', self.map, '-o', self.path('no'), '--tile', '15/1/1', '--pinned', os.path.join(out, 'build.json'), '--imagery', self.image), 1, 'leave out --imagery', target=self.path('no'))
         os.remove(os.path.join(out, 'imagery.json'))
-        self.refused(blockrand('build', self.map, '-o', self.path('no'), '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json')), 2, 'imagery.json', target=self.path('no'))
+        self.refused(blockrand('build', self.map, '-o', self.path('no'), '--lod', '2', '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json')), 2, 'imagery.json', target=self.path('no'))
 
     def test_explain_cuts_a_chip_out_of_the_image(self):
         out = self.build(self.map, 'chips', '--imagery', self.image, '--lod', '1')
@@ -423,7 +423,7 @@ class Imagery(BuildTest):
         self.assertEqual({r[4:] for r in rows}, {('more.ppm', '2023-06', 'CC BY 4.0')})
         self.assertTrue(all(r[1] >= 0.85 and 20 <= r[2] <= 300 for r in rows), rows)
         self.assertIn('Perhaps not mapped: 3', read_text(out, 'imagery.html'))
-        self.assertEqual(read_text(out, 'imagery.html').count('CC BY 4.0'), 1)
+        self.assertEqual(read_text(out, 'imagery.html').count('CC BY 4.0'), 2, 'in the list of images, and below the page')
         self.assertEqual(read_json(out, 'build.json')['counts']['models'], len(mapped), 'never a building by itself')
         self.assertEqual(blockrand('validate', out).code, 0)
         again = self.build(source, 'less_again', '--config', config, '--lod', '1', '--jobs', '1')
