@@ -88,7 +88,7 @@ class Nights(RegionTest):
             folder = os.path.join(disk, 'town')
             os.makedirs(folder)
             with open(os.path.join(folder, 'region.toml'), 'w', encoding='utf-8') as f:
-                f.write(LIMITS_OFF)
+                f.write('[build]\nlod = 2\n' + LIMITS_OFF)
             self.update(folder, SAMPLE)
             before = hashes(os.path.realpath(os.path.join(folder, 'current')))
             self.assertEqual(call(['mount', '-o', 'remount,ro', disk]).code, 0)
@@ -132,8 +132,8 @@ class Nights(RegionTest):
     def test_new_settings_build_anew(self):
         folder = self.region('anew')
         self.update(folder, SAMPLE)
-        with open(os.path.join(folder, 'region.toml'), 'a', encoding='utf-8') as f:
-            f.write('[build]\nlod = 1\n')
+        with open(os.path.join(folder, 'region.toml'), 'w', encoding='utf-8') as f:
+            f.write('[build]\nlod = 1\n' + LIMITS_OFF)
         self.assertIn('region.toml', self.update(folder).out)
         self.stands(folder, '000002')
         self.assertEqual(read_json(self.current(folder), 'build.json')['configuration']['lod'], 1)
