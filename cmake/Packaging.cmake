@@ -32,6 +32,7 @@ install(FILES ${documents}/zsh/_blockrand DESTINATION ${CMAKE_INSTALL_DATADIR}/z
 install(FILES ${documents}/fish/blockrand.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${doc_folder})
 install(FILES pipeline/picture/fonts/LICENSE.txt DESTINATION ${doc_folder} RENAME LICENSE.DejaVu)  # the program holds the font
+install(FILES viewer/bundle/LICENSES.txt DESTINATION ${doc_folder} RENAME LICENSES.viewer)  # and the page of `view`
 install(FILES samples/blockrand-viertel.osm DESTINATION ${doc_folder}/examples)
 
 set(CPACK_GENERATOR DEB TGZ)

@@ -14,17 +14,19 @@ from blockrand_run import SAMPLE, SOURCE, BuildTest, Setup, call, files_of, main
 
 INSTALLED = ['bin/blockrand', 'share/bash-completion/completions/blockrand', 'share/blockrand/configs/defaults/uses.toml',
              'share/blockrand/configs/materials/materials.toml', 'share/doc/blockrand/CHANGELOG.md',
-             'share/doc/blockrand/LICENSE', 'share/doc/blockrand/README.md',
+             'share/doc/blockrand/LICENSE', 'share/doc/blockrand/LICENSE.DejaVu', 'share/doc/blockrand/LICENSES.viewer',
+             'share/doc/blockrand/README.md',
              'share/doc/blockrand/examples/blockrand-viertel.osm', 'share/fish/vendor_completions.d/blockrand.fish',
              'share/man/man1/blockrand.1', 'share/zsh/site-functions/_blockrand']
 # Styles, district rules, grammars and profiles are many and grow: whatever the source tree holds.
 INSTALLED += ['share/blockrand/' + os.path.relpath(os.path.join(folder, name), SOURCE)
               for part in ('styles', 'districts', 'grammars', 'profiles') for folder, _, names in os.walk(os.path.join(SOURCE, 'configs', part))
               for name in names]
-# Of what the Debian package holds, what is called otherwise there.
+# Of what the Debian package holds, what is called otherwise there, or stands in another file (None).
 DEBIAN = {'share/man/man1/blockrand.1': 'share/man/man1/blockrand.1.gz',
           'share/doc/blockrand/CHANGELOG.md': 'share/doc/blockrand/changelog.gz',
-          'share/doc/blockrand/LICENSE': 'share/doc/blockrand/copyright'}
+          'share/doc/blockrand/LICENSE': 'share/doc/blockrand/copyright',
+          'share/doc/blockrand/LICENSE.DejaVu': None}
 
 
 def need(*tools):
@@ -152,14 +154,14 @@ class DebianPackage(Installed):
         self.assertRegex(self.field('Maintainer'), r'.+ <.+@.+>')
         self.assertRegex(self.field('Description'), r'^[^\n]{20,80}\n [^\n]{20,80}\n')
         depends = self.field('Depends')
-        for needed in (r'proj-data', r'libgdal\d+', r'libproj\d+', r'libgeos-c1\w*', r'libtinygltf\w+', r'libmeshoptimizer\w+', r'libxml2\w*', r'libfreetype6\w*', r'libc6'):
+        for needed in (r'proj-data', r'libgdal\d+', r'libproj\d+', r'libgeos-c1\w*', r'libtinygltf\w+', r'libmeshoptimizer\w+', r'libxml2\w*', r'libfreetype6\w*', r'libcpp-httplib[\d.]+', r'libc6'):
             self.assertRegex(depends, rf'(^|, ){needed}( \(|,|$)')
         self.assertNotRegex(depends, r'-dev|libcgal', 'what only building needs')
 
     def test_files_lie_where_debian_wants_them(self):
         root = self.path('tree')
         self.assertEqual(call(['dpkg-deb', '-x', self.package, root]).code, 0)
-        wanted = [os.path.join('usr', DEBIAN.get(p, p)) for p in INSTALLED] + ['usr/share/doc/blockrand/changelog.Debian.gz']
+        wanted = [os.path.join('usr', DEBIAN.get(p, p)) for p in INSTALLED if DEBIAN.get(p, p)] + ['usr/share/doc/blockrand/changelog.Debian.gz']
         self.assertEqual(files_of(root), sorted(wanted))
         with open(os.path.join(root, 'usr/share/doc/blockrand/copyright'), encoding='utf-8') as f:
             self.assertIn('/usr/share/common-licenses/GPL-3', f.read())
