@@ -489,10 +489,37 @@ function coarser(shape: Shape): Shape {
     kept.forEach((v, i) => into.set(from.subarray(v * size, v * size + size) as never, i * size));
     return into;
   };
-  return {
+  return backed(shape, order, {
     positions: pick(shape.positions, 3, new Float32Array(3 * kept.length)),
     normals: pick(shape.normals, 3, new Float32Array(3 * kept.length)),
     paint: pick(shape.paint, 4, new Uint8Array(4 * kept.length)),
     index: new Uint32Array(index),
+  });
+}
+
+/** Frames and reveals that are left out would be holes through the house: behind an opening lies a plane in the colour
+ * of its frame, wider than the opening by its depth, so that a slanting look meets it as well. The wall hides the rest of it. */
+function backed(shape: Shape, largest_first: number[], coarse: Shape): Shape {
+  let depth = 0;
+  for (let v = 2; v < shape.positions.length; v += 3) depth = Math.min(depth, shape.positions[v]!);
+  if (depth > -0.01) return coarse; // m: it stands on the wall, not in it
+  let [west, east, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
+  for (let v = 0; v < shape.positions.length; v += 3) {
+    if (shape.positions[v + 2]! > -0.005) continue;
+    west = Math.min(west, shape.positions[v]!);
+    east = Math.max(east, shape.positions[v]!);
+    low = Math.min(low, shape.positions[v + 1]!);
+    high = Math.max(high, shape.positions[v + 1]!);
+  }
+  const of_frame = largest_first.map((t) => shape.index[3 * t]!).find((v) => shape.paint[4 * v + 3] === KIND.detail);
+  const colour = of_frame === undefined ? [110, 110, 110, KIND.detail] : Array.from(shape.paint.subarray(4 * of_frame, 4 * of_frame + 4));
+  const z = depth - 0.01,
+    first = coarse.positions.length / 3;
+  west += depth, east -= depth, low += depth, high -= depth;
+  return {
+    positions: Float32Array.of(...coarse.positions, west, low, z, east, low, z, east, high, z, west, high, z),
+    normals: Float32Array.of(...coarse.normals, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1),
+    paint: Uint8Array.of(...coarse.paint, ...colour, ...colour, ...colour, ...colour),
+    index: Uint32Array.of(...coarse.index, first, first + 1, first + 2, first, first + 2, first + 3),
   };
 }
