@@ -124,6 +124,23 @@ function(blockrand_library)
   set_property(GLOBAL APPEND PROPERTY blockrand_table "${ARG_FOLDER}|${ARG_LINKS};${ARG_PRIVATE_LINKS}")
 endfunction()
 
+# A library that the program loads when it needs it (pipeline/base/shared_library.h): its headers for `target` and those who link it, and its
+# file's name as BLOCKRAND_<NAME>_SONAME.
+function(blockrand_loads target name library)
+  target_include_directories(${target} SYSTEM PUBLIC $<TARGET_PROPERTY:${library},INTERFACE_INCLUDE_DIRECTORIES>)
+  foreach(configuration IN ITEMS "" _NONE _RELEASE _RELWITHDEBINFO _NOCONFIG)
+    if(NOT soname)
+      get_target_property(soname ${library} IMPORTED_SONAME${configuration})
+      get_target_property(file ${library} IMPORTED_LOCATION${configuration})
+    endif()
+  endforeach()
+  if(NOT soname)
+    message(FATAL_ERROR "${library}: its CMake files do not name its SONAME. Use the distribution's package")
+  endif()
+  target_compile_definitions(${target} PRIVATE BLOCKRAND_${name}_SONAME="${soname}")
+  set_property(GLOBAL APPEND PROPERTY blockrand_loaded_files ${file})
+endfunction()
+
 # Files that are part of the program, such as style sheets and scripts: `asset("report/report.css")`, which HEADER declares.
 #   blockrand_assets(blockrand_outputs HEADER pipeline/outputs/assets.h NAMESPACE blockrand::outputs FILES report/report.css …)
 function(blockrand_assets target)

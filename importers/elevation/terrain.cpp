@@ -130,10 +130,11 @@ std::shared_ptr<const Block> Terrain::Impl::read(long long block_column, long lo
   std::vector<std::uint8_t> valid(block->size(), 255);
   const std::lock_guard lock(reading);
   const gdal::GdalScope scope;
-  CPLErr error = GDALRasterIO(band, GF_Read, x, y, width, height, block->data(), width, height, GDT_Float64, 0,
-                              kBlockSize * static_cast<int>(sizeof(double)));
+  CPLErr error = gdal::api().GDALRasterIO(band, GF_Read, x, y, width, height, block->data(), width, height, GDT_Float64,
+                                          0, kBlockSize * static_cast<int>(sizeof(double)));
   if (error < CE_Failure && mask != nullptr) {
-    error = GDALRasterIO(mask, GF_Read, x, y, width, height, valid.data(), width, height, GDT_Byte, 0, kBlockSize);
+    error = gdal::api().GDALRasterIO(mask, GF_Read, x, y, width, height, valid.data(), width, height, GDT_Byte, 0,
+                                     kBlockSize);
   }
   if (error >= CE_Failure) {
     throw base::InputError(description.path, "pixel " + std::to_string(x) + "," + std::to_string(y),
@@ -289,41 +290,43 @@ Terrain::Terrain(const std::string& path, std::optional<double> metres_per_unit,
                "/*.tif");
   }
   gdal::register_drivers();
-  if (GDALGetCacheMax64() > kMaxGdalCache) GDALSetCacheMax64(kMaxGdalCache);
+  if (gdal::api().GDALGetCacheMax64() > kMaxGdalCache) gdal::api().GDALSetCacheMax64(kMaxGdalCache);
   const gdal::GdalScope scope;
-  impl.dataset.reset(GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
+  impl.dataset.reset(
+      gdal::api().GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
   if (!impl.dataset) {
     refuse("is no raster that GDAL can read" + gdal::GdalScope::last_words(),
            "Check with gdalinfo; the file may be damaged or of another kind");
   }
   GDALDatasetH dataset = impl.dataset.get();
-  if (GDALGetRasterCount(dataset) < 1) {
+  if (gdal::api().GDALGetRasterCount(dataset) < 1) {
     refuse("has no raster band", "Name one of its sub-datasets (gdalinfo lists them)");
   }
-  impl.band = GDALGetRasterBand(dataset, 1);
-  if ((GDALGetMaskFlags(impl.band) & GMF_ALL_VALID) == 0) impl.mask = GDALGetMaskBand(impl.band);
-  impl.columns = GDALGetRasterXSize(dataset);
-  impl.rows = GDALGetRasterYSize(dataset);
+  impl.band = gdal::api().GDALGetRasterBand(dataset, 1);
+  if ((gdal::api().GDALGetMaskFlags(impl.band) & GMF_ALL_VALID) == 0)
+    impl.mask = gdal::api().GDALGetMaskBand(impl.band);
+  impl.columns = gdal::api().GDALGetRasterXSize(dataset);
+  impl.rows = gdal::api().GDALGetRasterYSize(dataset);
 
   std::array<double, 6> from_pixel{};
-  if (GDALGetGeoTransform(dataset, from_pixel.data()) != CE_None ||
-      GDALInvGeoTransform(from_pixel.data(), impl.to_pixel.data()) == 0) {
+  if (gdal::api().GDALGetGeoTransform(dataset, from_pixel.data()) != CE_None ||
+      gdal::api().GDALInvGeoTransform(from_pixel.data(), impl.to_pixel.data()) == 0) {
     refuse("has no georeference",
            "Put a world file beside it or set one with gdal_edit.py -a_ullr; rasters with control "
            "points: gdalwarp first");
   }
   char* wkt = nullptr;
   static constexpr std::array<const char*, 2> kFormat{"FORMAT=WKT2_2019", nullptr};
-  const OGRSpatialReferenceH reference = GDALGetSpatialRef(dataset);
-  if (reference == nullptr || OSRExportToWktEx(reference, &wkt, kFormat.data()) != OGRERR_NONE || wkt == nullptr ||
-      *wkt == '\0') {
-    CPLFree(wkt);
+  const OGRSpatialReferenceH reference = gdal::api().GDALGetSpatialRef(dataset);
+  if (reference == nullptr || gdal::api().OSRExportToWktEx(reference, &wkt, kFormat.data()) != OGRERR_NONE ||
+      wkt == nullptr || *wkt == '\0') {
+    gdal::api().VSIFree(wkt);
     refuse("has no coordinate reference system",
            "Set it with gdal_edit.py -a_srs EPSG:..., or put a .prj file beside it");
   }
   const std::string definition = wkt;
-  CPLFree(wkt);
-  impl.geographic = OSRIsGeographic(reference) != 0;
+  gdal::api().VSIFree(wkt);
+  impl.geographic = gdal::api().OSRIsGeographic(reference) != 0;
 
   const auto corner = [&](double column, double row) {
     return model::Point2{from_pixel[0] + from_pixel[1] * column + from_pixel[2] * row,
@@ -361,18 +364,18 @@ Terrain::Terrain(const std::string& path, std::optional<double> metres_per_unit,
   d.pixel_height = std::sqrt(from_pixel[2] * from_pixel[2] + from_pixel[5] * from_pixel[5]);
   d.columns = impl.columns, d.rows = impl.rows;
   int has = 0;
-  const double nodata = GDALGetRasterNoDataValue(impl.band, &has);
+  const double nodata = gdal::api().GDALGetRasterNoDataValue(impl.band, &has);
   if (has != 0) d.nodata = nodata;
 
-  const std::string unit = GDALGetRasterUnitType(impl.band);
+  const std::string unit = gdal::api().GDALGetRasterUnitType(impl.band);
   const auto metres =
       unit.empty() ? std::optional(metres_per_unit.value_or(vertical.metres_per_unit)) : metres_of(unit);
   if (!metres) {
     refuse("counts heights in \"" + unit + "\", which is no unit of length known here",
            "Set it with gdal_edit.py -units metre when the values are metres");
   }
-  impl.factor = GDALGetRasterScale(impl.band, &has) * *metres;
-  impl.shift = GDALGetRasterOffset(impl.band, &has) * *metres;
+  impl.factor = gdal::api().GDALGetRasterScale(impl.band, &has) * *metres;
+  impl.shift = gdal::api().GDALGetRasterOffset(impl.band, &has) * *metres;
 }
 
 Terrain::~Terrain() = default;

@@ -48,7 +48,7 @@ model::Point2 at(const FromPixel& g, double column, double row) {
 }
 
 std::string metadata(GDALDatasetH dataset, const char* domain, const char* key) {
-  const char* value = GDALGetMetadataItem(dataset, key, domain);
+  const char* value = gdal::api().GDALGetMetadataItem(dataset, key, domain);
   return value != nullptr ? value : "";
 }
 
@@ -71,8 +71,8 @@ std::string definition_of(OGRSpatialReferenceH reference) {
   char* wkt = nullptr;
   static constexpr std::array<const char*, 2> kFormat{"FORMAT=WKT2_2019", nullptr};
   std::string text;
-  if (OSRExportToWktEx(reference, &wkt, kFormat.data()) == OGRERR_NONE && wkt != nullptr) text = wkt;
-  CPLFree(wkt);
+  if (gdal::api().OSRExportToWktEx(reference, &wkt, kFormat.data()) == OGRERR_NONE && wkt != nullptr) text = wkt;
+  gdal::api().VSIFree(wkt);
   return text;
 }
 
@@ -80,21 +80,21 @@ std::string definition_of(OGRSpatialReferenceH reference) {
 std::string definition_beside(const std::string& path) {
   const std::string place = std::filesystem::path(path).replace_extension(".prj");
   VSIStatBufL status;
-  if (VSIStatL(place.c_str(), &status) != 0) return "";
-  char** lines = CSLLoad(place.c_str());
-  OGRSpatialReferenceH reference = OSRNewSpatialReference(nullptr);
+  if (gdal::api().VSIStatL(place.c_str(), &status) != 0) return "";
+  char** lines = gdal::api().CSLLoad(place.c_str());
+  OGRSpatialReferenceH reference = gdal::api().OSRNewSpatialReference(nullptr);
   std::string text;
-  if (lines != nullptr && OSRImportFromESRI(reference, lines) == OGRERR_NONE) {
+  if (lines != nullptr && gdal::api().OSRImportFromESRI(reference, lines) == OGRERR_NONE) {
     int count = 0;
     int* confidences = nullptr;
     // The entry of EPSG that it means has the datum's transformations; ESRI's text has none.
-    OGRSpatialReferenceH* matches = OSRFindMatches(reference, nullptr, &count, &confidences);
+    OGRSpatialReferenceH* matches = gdal::api().OSRFindMatches(reference, nullptr, &count, &confidences);
     text = definition_of(count > 0 && confidences[0] >= kSureMatch ? matches[0] : reference);
-    OSRFreeSRSArray(matches);
-    CPLFree(confidences);
+    gdal::api().OSRFreeSRSArray(matches);
+    gdal::api().VSIFree(confidences);
   }
-  CSLDestroy(lines);
-  OSRDestroySpatialReference(reference);
+  gdal::api().CSLDestroy(lines);
+  gdal::api().OSRDestroySpatialReference(reference);
   return text;
 }
 
@@ -116,23 +116,25 @@ OpenImage open(const std::string& path) {
     refuse("is a directory, not an image",
            "Name the images, or join them without copying: gdalbuildvrt images.vrt " + path + "/*.tif");
   gdal::register_drivers();
-  if (GDALGetCacheMax64() > kMaxGdalCache) GDALSetCacheMax64(kMaxGdalCache);
+  if (gdal::api().GDALGetCacheMax64() > kMaxGdalCache) gdal::api().GDALSetCacheMax64(kMaxGdalCache);
   OpenImage image;
-  image.dataset.reset(GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
+  image.dataset.reset(
+      gdal::api().GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
   if (!image.dataset)
     refuse("is no image that GDAL can read" + gdal::GdalScope::last_words(),
            "Check with gdalinfo; the file may be damaged or of another kind");
   GDALDatasetH dataset = image.dataset.get();
-  if (GDALGetRasterCount(dataset) < 1) refuse("has no bands", "Name one of its sub-datasets (gdalinfo lists them)");
+  if (gdal::api().GDALGetRasterCount(dataset) < 1)
+    refuse("has no bands", "Name one of its sub-datasets (gdalinfo lists them)");
   const bool placed =
-      GDALGetGeoTransform(dataset, image.from_pixel.data()) == CE_None &&
+      gdal::api().GDALGetGeoTransform(dataset, image.from_pixel.data()) == CE_None &&
       std::all_of(image.from_pixel.begin(), image.from_pixel.end(), [](double v) { return std::isfinite(v); }) &&
-      GDALInvGeoTransform(image.from_pixel.data(), image.to_pixel.data()) != 0;
+      gdal::api().GDALInvGeoTransform(image.from_pixel.data(), image.to_pixel.data()) != 0;
   if (!placed)
     refuse(
         "has no georeference",
         "Put a world file beside it or set one with gdal_edit.py -a_ullr; images with control points: gdalwarp first");
-  image.definition = definition_of(GDALGetSpatialRef(dataset));
+  image.definition = definition_of(gdal::api().GDALGetSpatialRef(dataset));
   if (image.definition.empty()) image.definition = definition_beside(path);
   if (image.definition.empty())
     refuse("has no coordinate reference system",
@@ -162,8 +164,8 @@ AerialImage::AerialImage(const ImageSource& source) : impl_(std::make_unique<Imp
   ImageDescription& d = impl_->description;
   impl_->to_pixel = image.to_pixel;
   d.source = source;
-  d.columns = GDALGetRasterXSize(dataset);
-  d.rows = GDALGetRasterYSize(dataset);
+  d.columns = gdal::api().GDALGetRasterXSize(dataset);
+  d.rows = gdal::api().GDALGetRasterYSize(dataset);
   const auto refuse = [&](const std::string& what, const std::string& remedy) {
     throw base::InputError(source.path, "", what, remedy);
   };

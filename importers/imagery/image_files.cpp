@@ -18,12 +18,13 @@ namespace blockrand::importers::imagery {
 namespace {
 
 ImageFile hashed(const std::string& path) {
-  const std::unique_ptr<VSILFILE, int (*)(VSILFILE*)> file(VSIFOpenL(path.c_str(), "rb"), VSIFCloseL);
+  const std::unique_ptr<VSILFILE, int (*)(VSILFILE*)> file(gdal::api().VSIFOpenL(path.c_str(), "rb"),
+                                                           gdal::api().VSIFCloseL);
   if (!file) throw base::InputError(path, "", "cannot be read", "It belongs to an image; check its rights");
   ImageFile out{path, 0, {}};
   base::Sha256 digest;
   std::array<char, 1 << 16> buffer;
-  while (const std::size_t n = VSIFReadL(buffer.data(), 1, buffer.size(), file.get())) {
+  while (const std::size_t n = gdal::api().VSIFReadL(buffer.data(), 1, buffer.size(), file.get())) {
     digest.add(std::string_view(buffer.data(), n));
     out.bytes += n;
   }
@@ -36,12 +37,12 @@ std::vector<std::string> names_of_files(const std::string& path) {
   gdal::register_drivers();
   const gdal::GdalScope quiet;
   std::vector<std::string> others;
-  if (const GDALDatasetH image = GDALOpenEx(path.c_str(), GDAL_OF_RASTER, nullptr, nullptr, nullptr)) {
-    char** const names = GDALGetFileList(image);
+  if (const GDALDatasetH image = gdal::api().GDALOpenEx(path.c_str(), GDAL_OF_RASTER, nullptr, nullptr, nullptr)) {
+    char** const names = gdal::api().GDALGetFileList(image);
     for (char** name = names; name && *name; ++name)
       if (*name != path) others.emplace_back(*name);
-    CSLDestroy(names);
-    GDALClose(image);
+    gdal::api().CSLDestroy(names);
+    gdal::api().GDALClose(image);
   }
   // Drivers do not list the files beside a picture that give it its place.
   const std::size_t dot = path.find_last_of('.');
@@ -49,7 +50,7 @@ std::vector<std::string> names_of_files(const std::string& path) {
     const std::string stem = path.substr(0, dot + 1), end = path.substr(dot + 1);
     for (const std::string& other : {stem + "prj", stem + "wld", path + "w", stem + end.front() + end.back() + "w"}) {
       VSIStatBufL status;
-      if (other != path && VSIStatL(other.c_str(), &status) == 0) others.push_back(other);
+      if (other != path && gdal::api().VSIStatL(other.c_str(), &status) == 0) others.push_back(other);
     }
   }
   std::sort(others.begin(), others.end());
@@ -57,7 +58,7 @@ std::vector<std::string> names_of_files(const std::string& path) {
   std::vector<std::string> names = {path};
   for (const std::string& other : others) {
     VSIStatBufL status;
-    if (VSIStatL(other.c_str(), &status) == 0 && !VSI_ISDIR(status.st_mode)) names.push_back(other);
+    if (gdal::api().VSIStatL(other.c_str(), &status) == 0 && !VSI_ISDIR(status.st_mode)) names.push_back(other);
   }
   return names;
 }
@@ -74,7 +75,7 @@ std::vector<FileStamp> stamps_of_raster(const std::string& path) {
   std::vector<FileStamp> stamps;
   for (const std::string& name : names_of_files(path)) {
     VSIStatBufL status;
-    if (VSIStatL(name.c_str(), &status) == 0)
+    if (gdal::api().VSIStatL(name.c_str(), &status) == 0)
       stamps.push_back({name, static_cast<std::uint64_t>(status.st_size), static_cast<std::int64_t>(status.st_mtime)});
   }
   return stamps;

@@ -22,8 +22,8 @@ PixelBlocks::PixelBlocks(std::unique_ptr<void, gdal::CloseDataset> dataset, Imag
     : dataset_(std::move(dataset)),
       bands_(std::move(bands)),
       path_(std::move(path)),
-      columns_(GDALGetRasterXSize(dataset_.get())),
-      rows_(GDALGetRasterYSize(dataset_.get())) {}
+      columns_(gdal::api().GDALGetRasterXSize(dataset_.get())),
+      rows_(gdal::api().GDALGetRasterYSize(dataset_.get())) {}
 
 std::shared_ptr<const PixelBlock> PixelBlocks::read(int level, long long column, long long row) {
   auto block = std::make_shared<PixelBlock>();
@@ -40,8 +40,8 @@ std::shared_ptr<const PixelBlock> PixelBlocks::read(int level, long long column,
   const std::lock_guard lock(reading_);
   const gdal::GdalScope scope;
   const auto take = [&](GDALRasterBandH band, void* out, GDALDataType type) {
-    if (GDALRasterIOEx(band, GF_Read, x, y, width << level, height << level, out, width, height, type, 0, 0, &how) >=
-        CE_Failure)
+    if (gdal::api().GDALRasterIOEx(band, GF_Read, x, y, width << level, height << level, out, width, height, type, 0, 0,
+                                   &how) >= CE_Failure)
       throw base::InputError(path_, "pixel " + std::to_string(x) + "," + std::to_string(y),
                              "the image cannot be read" + gdal::GdalScope::last_words(),
                              "The file is damaged or was cut short; fetch it again");
@@ -57,7 +57,7 @@ std::shared_ptr<const PixelBlock> PixelBlocks::read(int level, long long column,
   std::vector<std::uint8_t> bytes(pixels);
   std::vector<double> values;
   const auto take_band = [&](int number, std::size_t slot) {
-    GDALRasterBandH band = GDALGetRasterBand(dataset_.get(), number);
+    GDALRasterBandH band = gdal::api().GDALGetRasterBand(dataset_.get(), number);
     if (bands_.whole_bytes) {
       take(band, bytes.data(), GDT_Byte);
       each([&](std::size_t i, std::uint8_t* sample) { sample[slot] = bytes[i]; });
@@ -95,7 +95,7 @@ std::shared_ptr<const PixelBlock> PixelBlocks::read(int level, long long column,
   if (!bands_.masked.empty()) {
     std::vector<std::uint8_t> known(pixels, 0);
     for (const int number : bands_.masked) {
-      take(GDALGetMaskBand(GDALGetRasterBand(dataset_.get(), number)), bytes.data(), GDT_Byte);
+      take(gdal::api().GDALGetMaskBand(gdal::api().GDALGetRasterBand(dataset_.get(), number)), bytes.data(), GDT_Byte);
       for (std::size_t i = 0; i < pixels; ++i) known[i] = known[i] != 0 || bytes[i] >= kHalfKnown ? 1 : 0;
     }
     each([&](std::size_t i, std::uint8_t* sample) {

@@ -20,10 +20,10 @@ namespace blockrand::importers::polygons {
 namespace {
 
 struct DestroyFeature {
-  void operator()(void* f) const { OGR_F_Destroy(f); }
+  void operator()(void* f) const { gdal::api().OGR_F_Destroy(f); }
 };
 struct DestroyGeometry {
-  void operator()(void* g) const { OGR_G_DestroyGeometry(g); }
+  void operator()(void* g) const { gdal::api().OGR_G_DestroyGeometry(g); }
 };
 using Dataset = std::unique_ptr<void, gdal::CloseDataset>;
 using Feature = std::unique_ptr<void, DestroyFeature>;
@@ -37,15 +37,15 @@ std::string listed(const std::vector<std::string>& names) {
 
 OGRLayerH choose_layer(GDALDatasetH data, const std::string& path, const std::string& wanted) {
   std::vector<std::string> names;
-  for (int i = 0; i < GDALDatasetGetLayerCount(data); ++i)
-    names.emplace_back(OGR_L_GetName(GDALDatasetGetLayer(data, i)));
+  for (int i = 0; i < gdal::api().GDALDatasetGetLayerCount(data); ++i)
+    names.emplace_back(gdal::api().OGR_L_GetName(gdal::api().GDALDatasetGetLayer(data, i)));
   if (names.empty()) throw base::InputError(path, "", "has no layer", "Name a vector file with polygons");
   if (wanted.empty()) {
     if (names.size() > 1) throw base::InputError(path, "", "has several layers", "Name one of them: " + listed(names));
-    return GDALDatasetGetLayer(data, 0);
+    return gdal::api().GDALDatasetGetLayer(data, 0);
   }
   for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == wanted) return GDALDatasetGetLayer(data, static_cast<int>(i));
+    if (names[i] == wanted) return gdal::api().GDALDatasetGetLayer(data, static_cast<int>(i));
   const std::string near = base::nearest(wanted, names);
   throw base::InputError(path, wanted, "has no such layer",
                          near.empty() ? "Its layers: " + listed(names) : "Did you mean " + near + "?");
@@ -53,16 +53,16 @@ OGRLayerH choose_layer(GDALDatasetH data, const std::string& path, const std::st
 
 /// Indices of the fields that the choice names.
 std::vector<int> field_indices(OGRLayerH layer, const std::string& path, const VectorChoice& choice) {
-  OGRFeatureDefnH definition = OGR_L_GetLayerDefn(layer);
+  OGRFeatureDefnH definition = gdal::api().OGR_L_GetLayerDefn(layer);
   std::vector<std::string> names;
-  for (int i = 0; i < OGR_FD_GetFieldCount(definition); ++i)
-    names.emplace_back(OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(definition, i)));
+  for (int i = 0; i < gdal::api().OGR_FD_GetFieldCount(definition); ++i)
+    names.emplace_back(gdal::api().OGR_Fld_GetNameRef(gdal::api().OGR_FD_GetFieldDefn(definition, i)));
   std::vector<int> out;
   for (const auto& [field, value] : choice.attributes) {
     const auto found = std::find(names.begin(), names.end(), field);
     if (found == names.end()) {
       const std::string near = base::nearest(field, names);
-      throw base::InputError(path, OGR_L_GetName(layer), "has no field " + field,
+      throw base::InputError(path, gdal::api().OGR_L_GetName(layer), "has no field " + field,
                              near.empty() ? "Its fields: " + listed(names) : "Did you mean " + near + "?");
     }
     out.push_back(static_cast<int>(found - names.begin()));
@@ -72,13 +72,14 @@ std::vector<int> field_indices(OGRLayerH layer, const std::string& path, const V
 
 /// Polygons of collections too, each with its rings.
 void collect(OGRGeometryH geometry, std::vector<std::vector<std::vector<model::Point2>>>& polygons) {
-  const OGRwkbGeometryType type = wkbFlatten(OGR_G_GetGeometryType(geometry));
+  const OGRwkbGeometryType type = gdal::api().OGR_GT_Flatten(gdal::api().OGR_G_GetGeometryType(geometry));
   if (type == wkbPolygon) {
     std::vector<std::vector<model::Point2>> rings;
-    for (int r = 0; r < OGR_G_GetGeometryCount(geometry); ++r) {
-      OGRGeometryH ring = OGR_G_GetGeometryRef(geometry, r);
+    for (int r = 0; r < gdal::api().OGR_G_GetGeometryCount(geometry); ++r) {
+      OGRGeometryH ring = gdal::api().OGR_G_GetGeometryRef(geometry, r);
       std::vector<model::Point2> points;
-      for (int i = 0; i < OGR_G_GetPointCount(ring); ++i) points.push_back({OGR_G_GetX(ring, i), OGR_G_GetY(ring, i)});
+      for (int i = 0; i < gdal::api().OGR_G_GetPointCount(ring); ++i)
+        points.push_back({gdal::api().OGR_G_GetX(ring, i), gdal::api().OGR_G_GetY(ring, i)});
       if (points.size() > 1 && points.front() == points.back()) points.pop_back();
       if (points.size() >= 3) rings.push_back(std::move(points));
     }
@@ -86,31 +87,33 @@ void collect(OGRGeometryH geometry, std::vector<std::vector<std::vector<model::P
     return;
   }
   if (type == wkbMultiPolygon || type == wkbGeometryCollection)
-    for (int i = 0; i < OGR_G_GetGeometryCount(geometry); ++i) collect(OGR_G_GetGeometryRef(geometry, i), polygons);
+    for (int i = 0; i < gdal::api().OGR_G_GetGeometryCount(geometry); ++i)
+      collect(gdal::api().OGR_G_GetGeometryRef(geometry, i), polygons);
 }
 
 /// From the layer's CRS to WGS 84; empty: the layer says no CRS.
 std::optional<georef::Transform> transform_of(OGRLayerH layer, const std::string& path) {
-  OGRSpatialReferenceH crs = OGR_L_GetSpatialRef(layer);
+  OGRSpatialReferenceH crs = gdal::api().OGR_L_GetSpatialRef(layer);
   if (!crs) return std::nullopt;
   char* wkt = nullptr;
-  OSRExportToWktEx(crs, &wkt, nullptr);
+  gdal::api().OSRExportToWktEx(crs, &wkt, nullptr);
   const std::string definition = wkt ? wkt : "";
-  CPLFree(wkt);
+  gdal::api().VSIFree(wkt);
   try {
     return georef::Transform(definition, "EPSG:4326");
   } catch (const base::UsageError& error) {
-    throw base::InputError(path, OGR_L_GetName(layer), std::string("cannot be brought to WGS 84: ") + error.what(),
+    throw base::InputError(path, gdal::api().OGR_L_GetName(layer),
+                           std::string("cannot be brought to WGS 84: ") + error.what(),
                            "Reproject it, for example with ogr2ogr -t_srs EPSG:4326");
   }
 }
 
 /// GDAL gives coordinates in the axis order of the file's data; in the order of people, longitude or easting first.
 model::Point2 east_first(OGRLayerH layer, model::Point2 p) {
-  OGRSpatialReferenceH crs = OGR_L_GetSpatialRef(layer);
+  OGRSpatialReferenceH crs = gdal::api().OGR_L_GetSpatialRef(layer);
   int count = 0;
-  const int* axes = crs ? OSRGetDataAxisToSRSAxisMapping(crs, &count) : nullptr;
-  const bool authority_order = crs && axes && count >= 2 && axes[0] == 1 && OSREPSGTreatsAsLatLong(crs);
+  const int* axes = crs ? gdal::api().OSRGetDataAxisToSRSAxisMapping(crs, &count) : nullptr;
+  const bool authority_order = crs && axes && count >= 2 && axes[0] == 1 && gdal::api().OSREPSGTreatsAsLatLong(crs);
   return authority_order ? model::Point2{p.y, p.x} : p;
 }
 
@@ -123,31 +126,32 @@ std::vector<PolygonFeature> read_polygons(const std::string& path, const VectorC
     throw base::InputError(path, "", "does not exist",
                            "Check the path; it starts at the folder of the file that names it");
   gdal::register_drivers();
-  const Dataset data(GDALOpenEx(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
+  const Dataset data(
+      gdal::api().GDALOpenEx(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
   if (!data)
     throw base::InputError(path, "", "is no vector file that GDAL reads" + gdal::GdalScope::last_words(),
                            "Name a GeoJSON, GeoPackage, Shapefile, GML ...");
   OGRLayerH layer = choose_layer(data.get(), path, choice.layer);
   const std::vector<int> fields = field_indices(layer, path, choice);
   const std::optional<georef::Transform> transform = transform_of(layer, path);
-  const std::string layer_name = OGR_L_GetName(layer);
-  OGRFeatureDefnH definition = OGR_L_GetLayerDefn(layer);
+  const std::string layer_name = gdal::api().OGR_L_GetName(layer);
+  OGRFeatureDefnH definition = gdal::api().OGR_L_GetLayerDefn(layer);
 
   std::vector<PolygonFeature> out;
-  OGR_L_ResetReading(layer);
-  while (const Feature feature{OGR_L_GetNextFeature(layer)}) {
+  gdal::api().OGR_L_ResetReading(layer);
+  while (const Feature feature{gdal::api().OGR_L_GetNextFeature(layer)}) {
     bool chosen = true;
     for (std::size_t i = 0; i < fields.size() && chosen; ++i)
-      chosen = choice.attributes[i].second == OGR_F_GetFieldAsString(feature.get(), fields[i]);
-    OGRGeometryH geometry = OGR_F_GetGeometryRef(feature.get());
+      chosen = choice.attributes[i].second == gdal::api().OGR_F_GetFieldAsString(feature.get(), fields[i]);
+    OGRGeometryH geometry = gdal::api().OGR_F_GetGeometryRef(feature.get());
     if (!chosen || !geometry) continue;
-    const Geometry straight(OGR_G_GetLinearGeometry(geometry, 0, nullptr));
+    const Geometry straight(gdal::api().OGR_G_GetLinearGeometry(geometry, 0, nullptr));
     if (!straight) continue;
     PolygonFeature polygon;
-    polygon.fid = OGR_F_GetFID(feature.get());
-    for (int i = 0; i < OGR_FD_GetFieldCount(definition); ++i)
-      polygon.attributes.emplace_back(OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(definition, i)),
-                                      OGR_F_GetFieldAsString(feature.get(), i));
+    polygon.fid = gdal::api().OGR_F_GetFID(feature.get());
+    for (int i = 0; i < gdal::api().OGR_FD_GetFieldCount(definition); ++i)
+      polygon.attributes.emplace_back(gdal::api().OGR_Fld_GetNameRef(gdal::api().OGR_FD_GetFieldDefn(definition, i)),
+                                      gdal::api().OGR_F_GetFieldAsString(feature.get(), i));
     const auto to_place = [&](model::Point2 as_stored) {
       const model::Point2 p = east_first(layer, as_stored);
       const model::Point2 degrees = transform ? transform->forward(p) : p;

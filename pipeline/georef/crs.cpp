@@ -63,26 +63,28 @@ Crs named_crs(const std::string& code, const GeoBox* extent) {
   const detail::Context context = detail::make_context();
   PJ_CONTEXT* c = context.get();
   const detail::Pj pj(
-      proj_create_from_database(c, "EPSG", crs.authority_code.c_str() + 5, PJ_CATEGORY_CRS, 0, nullptr));
+      detail::proj().proj_create_from_database(c, "EPSG", crs.authority_code.c_str() + 5, PJ_CATEGORY_CRS, 0, nullptr));
   if (!pj) refuse(code, "is unknown to PROJ's EPSG table", extent);
-  crs.name = detail::text(proj_get_name(pj.get()));
+  crs.name = detail::text(detail::proj().proj_get_name(pj.get()));
   const std::string named = "(" + crs.name + ") ";
-  if (proj_get_type(pj.get()) == PJ_TYPE_COMPOUND_CRS) {
-    const detail::Pj flat(proj_crs_get_sub_crs(c, pj.get(), 0));
-    const char* part = flat ? proj_get_id_code(flat.get(), 0) : nullptr;
+  if (detail::proj().proj_get_type(pj.get()) == PJ_TYPE_COMPOUND_CRS) {
+    const detail::Pj flat(detail::proj().proj_crs_get_sub_crs(c, pj.get(), 0));
+    const char* part = flat ? detail::proj().proj_get_id_code(flat.get(), 0) : nullptr;
     refuse(code,
            named + "carries a height system too; give its horizontal part" +
                (part != nullptr ? " EPSG:" + std::string(part) : std::string()),
            extent);
   }
-  if (proj_get_type(pj.get()) != PJ_TYPE_PROJECTED_CRS) refuse(code, named + "is not a projected system", extent);
-  const detail::Pj axes(proj_crs_get_coordinate_system(c, pj.get()));
+  if (detail::proj().proj_get_type(pj.get()) != PJ_TYPE_PROJECTED_CRS)
+    refuse(code, named + "is not a projected system", extent);
+  const detail::Pj axes(detail::proj().proj_crs_get_coordinate_system(c, pj.get()));
   std::string directions;
-  for (int i = 0; i < proj_cs_get_axis_count(c, axes.get()); ++i) {
+  for (int i = 0; i < detail::proj().proj_cs_get_axis_count(c, axes.get()); ++i) {
     const char* direction = nullptr;
     const char* unit = nullptr;
     double metres = 0;
-    proj_cs_get_axis_info(c, axes.get(), i, nullptr, nullptr, &direction, &metres, &unit, nullptr, nullptr);
+    detail::proj().proj_cs_get_axis_info(c, axes.get(), i, nullptr, nullptr, &direction, &metres, &unit, nullptr,
+                                         nullptr);
     if (metres != 1.0) refuse(code, named + "counts in " + detail::text(unit) + ", not in metres", extent);
     directions += detail::text(direction) + ' ';
   }

@@ -18,20 +18,22 @@ struct Operation {
 
 /// The best operation whose grids are installed; null where there is none but "ballpark" ones.
 Operation best_operation(PJ_CONTEXT* c, const std::string& from, const std::string& to) {
-  const detail::Pj source(proj_create(c, from.c_str())), target(proj_create(c, to.c_str()));
+  const detail::Pj source(detail::proj().proj_create(c, from.c_str())),
+      target(detail::proj().proj_create(c, to.c_str()));
   if (!source || !target) return {};
-  const detail::Factory factory(proj_create_operation_factory_context(c, nullptr));
-  proj_operation_factory_context_set_allow_ballpark_transformations(c, factory.get(), 0);
-  proj_operation_factory_context_set_grid_availability_use(c, factory.get(),
-                                                           PROJ_GRID_AVAILABILITY_DISCARD_OPERATION_IF_MISSING_GRID);
-  proj_operation_factory_context_set_spatial_criterion(c, factory.get(), PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION);
-  const detail::PjList list(proj_create_operations(c, source.get(), target.get(), factory.get()));
-  for (int i = 0; list && i < proj_list_get_count(list.get()); ++i) {
-    const detail::Pj candidate(proj_list_get(c, list.get(), i));
-    if (!candidate || proj_coordoperation_has_ballpark_transformation(c, candidate.get())) continue;
-    if (!proj_coordoperation_is_instantiable(c, candidate.get())) continue;
-    Operation found{detail::Pj(proj_normalize_for_visualization(c, candidate.get())),
-                    proj_coordoperation_get_accuracy(c, candidate.get())};
+  const detail::Factory factory(detail::proj().proj_create_operation_factory_context(c, nullptr));
+  detail::proj().proj_operation_factory_context_set_allow_ballpark_transformations(c, factory.get(), 0);
+  detail::proj().proj_operation_factory_context_set_grid_availability_use(
+      c, factory.get(), PROJ_GRID_AVAILABILITY_DISCARD_OPERATION_IF_MISSING_GRID);
+  detail::proj().proj_operation_factory_context_set_spatial_criterion(c, factory.get(),
+                                                                      PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION);
+  const detail::PjList list(detail::proj().proj_create_operations(c, source.get(), target.get(), factory.get()));
+  for (int i = 0; list && i < detail::proj().proj_list_get_count(list.get()); ++i) {
+    const detail::Pj candidate(detail::proj().proj_list_get(c, list.get(), i));
+    if (!candidate || detail::proj().proj_coordoperation_has_ballpark_transformation(c, candidate.get())) continue;
+    if (!detail::proj().proj_coordoperation_is_instantiable(c, candidate.get())) continue;
+    Operation found{detail::Pj(detail::proj().proj_normalize_for_visualization(c, candidate.get())),
+                    detail::proj().proj_coordoperation_get_accuracy(c, candidate.get())};
     if (found.pj) return found;
   }
   return {};
@@ -41,9 +43,10 @@ std::string number_of(const std::string& code) { return code.substr(code.find(':
 
 /// Height that comes out for height 0, in the target's unit.
 std::optional<double> shift_at(const Operation& operation, double lon_deg, double lat_deg) {
-  const PJ_COORD out = proj_trans(operation.pj.get(), PJ_FWD, proj_coord(lon_deg, lat_deg, 0, 0));
+  const PJ_COORD out =
+      detail::proj().proj_trans(operation.pj.get(), PJ_FWD, detail::proj().proj_coord(lon_deg, lat_deg, 0, 0));
   if (std::isfinite(out.xyz.z)) return out.xyz.z;
-  proj_errno_reset(operation.pj.get());
+  detail::proj().proj_errno_reset(operation.pj.get());
   return std::nullopt;
 }
 

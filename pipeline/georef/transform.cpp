@@ -83,17 +83,17 @@ std::optional<TransverseMercator::Parameters> transverse_mercator_of(const std::
 
 /// The horizontal part of a CRS, or nothing when PROJ does not know it.
 Pj horizontal_crs(PJ_CONTEXT* context, const std::string& definition) {
-  Pj crs(proj_create(context, definition.c_str()));
-  if (crs && !proj_is_crs(crs.get())) return nullptr;
-  if (crs && proj_get_type(crs.get()) == PJ_TYPE_COMPOUND_CRS) {
-    crs = Pj(proj_crs_get_sub_crs(context, crs.get(), 0));
+  Pj crs(detail::proj().proj_create(context, definition.c_str()));
+  if (crs && !detail::proj().proj_is_crs(crs.get())) return nullptr;
+  if (crs && detail::proj().proj_get_type(crs.get()) == PJ_TYPE_COMPOUND_CRS) {
+    crs = Pj(detail::proj().proj_crs_get_sub_crs(context, crs.get(), 0));
   }
   return crs;
 }
 
 std::string code_of(const PJ* crs) {
-  const std::string authority = detail::text(proj_get_id_auth_name(crs, 0));
-  return authority.empty() ? authority : authority + ":" + detail::text(proj_get_id_code(crs, 0));
+  const std::string authority = detail::text(detail::proj().proj_get_id_auth_name(crs, 0));
+  return authority.empty() ? authority : authority + ":" + detail::text(detail::proj().proj_get_id_code(crs, 0));
 }
 
 std::string shorten(const std::string& definition) {
@@ -101,25 +101,28 @@ std::string shorten(const std::string& definition) {
 }
 
 Pj best_operation(PJ_CONTEXT* context, const PJ* from, const PJ* to, const std::optional<GeoBox>& area, bool ballpark) {
-  detail::Factory factory(proj_create_operation_factory_context(context, nullptr));
-  proj_operation_factory_context_set_allow_ballpark_transformations(context, factory.get(), ballpark ? 1 : 0);
-  proj_operation_factory_context_set_grid_availability_use(context, factory.get(),
-                                                           PROJ_GRID_AVAILABILITY_DISCARD_OPERATION_IF_MISSING_GRID);
-  proj_operation_factory_context_set_spatial_criterion(context, factory.get(),
-                                                       PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION);
+  detail::Factory factory(detail::proj().proj_create_operation_factory_context(context, nullptr));
+  detail::proj().proj_operation_factory_context_set_allow_ballpark_transformations(context, factory.get(),
+                                                                                   ballpark ? 1 : 0);
+  detail::proj().proj_operation_factory_context_set_grid_availability_use(
+      context, factory.get(), PROJ_GRID_AVAILABILITY_DISCARD_OPERATION_IF_MISSING_GRID);
+  detail::proj().proj_operation_factory_context_set_spatial_criterion(context, factory.get(),
+                                                                      PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION);
   if (area) {
     // PROJ 9.1 recurses without end on an area without width at +180: give every area some.
     constexpr double kLeast = 1e-6;  // degrees
     const double west = area->west >= 180 - kLeast ? 180 - 2 * kLeast : area->west;
     double east = area->east;
     if (east >= west && east - west < kLeast) east = west + kLeast;
-    proj_operation_factory_context_set_area_of_interest(context, factory.get(), west, area->south, east, area->north);
+    detail::proj().proj_operation_factory_context_set_area_of_interest(context, factory.get(), west, area->south, east,
+                                                                       area->north);
   }
-  detail::PjList list(proj_create_operations(context, from, to, factory.get()));
-  for (int i = 0; list && i < proj_list_get_count(list.get()); ++i) {
-    Pj operation(proj_list_get(context, list.get(), i));
-    if (!operation || !proj_coordoperation_is_instantiable(context, operation.get())) continue;
-    const bool is_ballpark = proj_coordoperation_has_ballpark_transformation(context, operation.get()) != 0;
+  detail::PjList list(detail::proj().proj_create_operations(context, from, to, factory.get()));
+  for (int i = 0; list && i < detail::proj().proj_list_get_count(list.get()); ++i) {
+    Pj operation(detail::proj().proj_list_get(context, list.get(), i));
+    if (!operation || !detail::proj().proj_coordoperation_is_instantiable(context, operation.get())) continue;
+    const bool is_ballpark =
+        detail::proj().proj_coordoperation_has_ballpark_transformation(context, operation.get()) != 0;
     if (is_ballpark == ballpark) return operation;
   }
   return nullptr;
@@ -150,7 +153,7 @@ struct Transform::Impl {
     }
     auto worker = std::make_unique<Worker>();
     worker->context = detail::make_context();
-    worker->operation = Pj(proj_create(worker->context.get(), pipeline.c_str()));
+    worker->operation = Pj(detail::proj().proj_create(worker->context.get(), pipeline.c_str()));
     if (!worker->operation) throw base::UsageError("PROJ cannot use its own operation \"" + pipeline + "\"");
     return worker;
   }
@@ -158,13 +161,13 @@ struct Transform::Impl {
   model::Point2 through_proj(model::Point2 p, PJ_DIRECTION direction) {
     auto worker = borrow();
     PJ* pj = worker->operation.get();
-    PJ_COORD out = proj_trans(pj, direction, proj_coord(p.x, p.y, 0, 0));
+    PJ_COORD out = detail::proj().proj_trans(pj, direction, detail::proj().proj_coord(p.x, p.y, 0, 0));
     if (drops_height && direction == PJ_INV && std::isfinite(out.xy.x)) {
-      const PJ_COORD again = proj_trans(pj, PJ_FWD, proj_coord(out.xy.x, out.xy.y, 0, 0));
+      const PJ_COORD again = detail::proj().proj_trans(pj, PJ_FWD, detail::proj().proj_coord(out.xy.x, out.xy.y, 0, 0));
       const double dx = p.x - again.xy.x, dy = p.y - again.xy.y;
-      out = proj_trans(pj, PJ_INV, proj_coord(p.x + dx, p.y + dy, 0, 0));
+      out = detail::proj().proj_trans(pj, PJ_INV, detail::proj().proj_coord(p.x + dx, p.y + dy, 0, 0));
     }
-    if (!std::isfinite(out.xy.x)) proj_errno_reset(pj);
+    if (!std::isfinite(out.xy.x)) detail::proj().proj_errno_reset(pj);
     const std::lock_guard lock(mutex);
     idle.push_back(std::move(worker));
     return {out.xy.x, out.xy.y};
@@ -222,12 +225,13 @@ Transform::Transform(const std::string& from, const std::string& to, const std::
                   : "") +
         ". Choose another coordinate reference system, or install the grid that this one needs (package proj-data)");
   }
-  impl_->operation = detail::text(proj_get_name(operation.get()));
-  impl_->accuracy = proj_get_type(operation.get()) == PJ_TYPE_CONVERSION
+  impl_->operation = detail::text(detail::proj().proj_get_name(operation.get()));
+  impl_->accuracy = detail::proj().proj_get_type(operation.get()) == PJ_TYPE_CONVERSION
                         ? 0
-                        : proj_coordoperation_get_accuracy(context.get(), operation.get());
-  const Pj normal(proj_normalize_for_visualization(context.get(), operation.get()));
-  const char* pipeline = normal ? proj_as_proj_string(context.get(), normal.get(), PJ_PROJ_5, nullptr) : nullptr;
+                        : detail::proj().proj_coordoperation_get_accuracy(context.get(), operation.get());
+  const Pj normal(detail::proj().proj_normalize_for_visualization(context.get(), operation.get()));
+  const char* pipeline =
+      normal ? detail::proj().proj_as_proj_string(context.get(), normal.get(), PJ_PROJ_5, nullptr) : nullptr;
   if (pipeline == nullptr) throw base::UsageError("PROJ cannot write its operation from " + pair + " as a pipeline");
   impl_->pipeline = pipeline;
   impl_->finish(area);
@@ -268,22 +272,22 @@ std::optional<double> Transform::own_scale(LonLat p) const {
 VerticalCrs vertical_crs_of(const std::string& definition) {
   const Context context = detail::make_context();
   VerticalCrs result;
-  Pj crs(proj_create(context.get(), definition.c_str()));
+  Pj crs(detail::proj().proj_create(context.get(), definition.c_str()));
   if (!crs) return result;
   const auto axis = [&](const PJ* of, int index, const char** direction, double* unit) {
-    const Pj axes(proj_crs_get_coordinate_system(context.get(), of));
-    return axes && proj_cs_get_axis_count(context.get(), axes.get()) > index &&
-           proj_cs_get_axis_info(context.get(), axes.get(), index, nullptr, nullptr, direction, unit, nullptr, nullptr,
-                                 nullptr) != 0;
+    const Pj axes(detail::proj().proj_crs_get_coordinate_system(context.get(), of));
+    return axes && detail::proj().proj_cs_get_axis_count(context.get(), axes.get()) > index &&
+           detail::proj().proj_cs_get_axis_info(context.get(), axes.get(), index, nullptr, nullptr, direction, unit,
+                                                nullptr, nullptr, nullptr) != 0;
   };
-  const PJ_TYPE type = proj_get_type(crs.get());
+  const PJ_TYPE type = detail::proj().proj_get_type(crs.get());
   if (type == PJ_TYPE_GEOGRAPHIC_3D_CRS || type == PJ_TYPE_PROJECTED_CRS) {
     result.ellipsoidal = axis(crs.get(), 2, nullptr, &result.metres_per_unit);
     return result;
   }
-  if (type == PJ_TYPE_COMPOUND_CRS) crs = Pj(proj_crs_get_sub_crs(context.get(), crs.get(), 1));
-  if (!crs || proj_get_type(crs.get()) != PJ_TYPE_VERTICAL_CRS) return result;
-  result.name = detail::text(proj_get_name(crs.get()));
+  if (type == PJ_TYPE_COMPOUND_CRS) crs = Pj(detail::proj().proj_crs_get_sub_crs(context.get(), crs.get(), 1));
+  if (!crs || detail::proj().proj_get_type(crs.get()) != PJ_TYPE_VERTICAL_CRS) return result;
+  result.name = detail::text(detail::proj().proj_get_name(crs.get()));
   result.authority_code = code_of(crs.get());
   const char* direction = nullptr;
   if (axis(crs.get(), 0, &direction, &result.metres_per_unit)) result.downwards = detail::text(direction) == "down";
@@ -294,7 +298,7 @@ CrsName name_of_crs(const std::string& definition) {
   const Context context = detail::make_context();
   const Pj crs = horizontal_crs(context.get(), definition);
   if (!crs) return {};
-  return {detail::text(proj_get_name(crs.get())), code_of(crs.get())};
+  return {detail::text(detail::proj().proj_get_name(crs.get())), code_of(crs.get())};
 }
 
 }  // namespace blockrand::georef

@@ -1,8 +1,6 @@
 #include "pipeline/layer_file/layer_file.h"
 
 #include <fcntl.h>
-#include <gdal_priv.h>
-#include <ogrsf_frmts.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <type_traits>
 
 #include "pipeline/base/error.h"
 #include "pipeline/gdal/gdal_scope.h"
@@ -18,7 +17,20 @@
 namespace blockrand::layer_file {
 namespace {
 
+using gdal::api;
 using gdal::GdalScope;
+
+struct DestroyFeature {
+  void operator()(OGRFeatureH feature) const { api().OGR_F_Destroy(feature); }
+};
+struct DestroyField {
+  void operator()(OGRFieldDefnH field) const { api().OGR_Fld_Destroy(field); }
+};
+struct DestroyReference {
+  void operator()(OGRSpatialReferenceH reference) const { api().OSRDestroySpatialReference(reference); }
+};
+using Feature = std::unique_ptr<std::remove_pointer_t<OGRFeatureH>, DestroyFeature>;
+using Field = std::unique_ptr<std::remove_pointer_t<OGRFieldDefnH>, DestroyField>;
 
 /// "2024-05-01T00:00:00Z" as GeoPackage wants it, with milliseconds; the epoch where the data does not say.
 std::string geopackage_time(const std::string& data_time) {
@@ -84,15 +96,15 @@ bool is_json(const Column& column) { return column.name == "tags"; }
 struct LayerFile::Impl {
   struct Layer {
     std::string table;
-    OGRLayer* layer = nullptr;
-    std::unique_ptr<OGRFeature, OGRFeatureUniquePtrDeleter> feature;  // used again for every row
+    OGRLayerH layer = nullptr;
+    Feature feature;  // used again for every row
     std::vector<Column> columns;
   };
 
   std::string path;
   FileOptions options;
-  std::unique_ptr<GDALDataset, gdal::CloseDataset> dataset;
-  OGRSpatialReference srs;
+  std::unique_ptr<std::remove_pointer_t<GDALDatasetH>, gdal::CloseDataset> dataset;
+  std::unique_ptr<std::remove_pointer_t<OGRSpatialReferenceH>, DestroyReference> srs;
   std::vector<std::unique_ptr<Layer>> layers;  // in the order of the file
   bool made = false, closed = false;
 
@@ -101,7 +113,7 @@ struct LayerFile::Impl {
     // What is left of a file that failed is of no use to anyone.
     const GdalScope scope(settings());
     for (const auto& layer : layers) layer->feature.reset();
-    if (dataset) dataset->RollbackTransaction();
+    if (dataset) api().GDALDatasetRollbackTransaction(dataset.get());
     dataset.reset();
     if (made) std::remove(path.c_str());
   }
@@ -139,8 +151,8 @@ struct LayerFile::Impl {
   }
 
   void sql(const GdalScope& scope, const std::string& statement) {
-    OGRLayer* const result = dataset->ExecuteSQL(statement.c_str(), nullptr, nullptr);
-    if (result != nullptr) dataset->ReleaseResultSet(result);
+    OGRLayerH result = api().GDALDatasetExecuteSQL(dataset.get(), statement.c_str(), nullptr, nullptr);
+    if (result != nullptr) api().GDALDatasetReleaseResultSet(dataset.get(), result);
     check(scope, true);
   }
 
@@ -150,17 +162,18 @@ struct LayerFile::Impl {
                                               nullptr};
     Layer& l = *layers.emplace_back(std::make_unique<Layer>());
     l.table = spec.table;
-    l.layer = dataset->CreateLayer(spec.table.c_str(), &srs, kTypes[static_cast<std::size_t>(spec.geometry)],
-                                   const_cast<char**>(creation.data()));
+    l.layer = api().GDALDatasetCreateLayer(dataset.get(), spec.table.c_str(), srs.get(),
+                                           kTypes[static_cast<std::size_t>(spec.geometry)],
+                                           const_cast<char**>(creation.data()));
     check(scope, l.layer != nullptr);
     for (const Column& c : spec.columns) {
-      OGRFieldDefn field(c.name.c_str(), c.kind == ColumnKind::integer ? OFTInteger64
-                                         : c.kind == ColumnKind::real  ? OFTReal
-                                                                       : OFTString);
-      if (is_json(c)) field.SetSubType(OFSTJSON);
-      check(scope, l.layer->CreateField(&field) == OGRERR_NONE);
+      const Field field(api().OGR_Fld_Create(c.name.c_str(), c.kind == ColumnKind::integer ? OFTInteger64
+                                                             : c.kind == ColumnKind::real  ? OFTReal
+                                                                                           : OFTString));
+      if (is_json(c)) api().OGR_Fld_SetSubType(field.get(), OFSTJSON);
+      check(scope, api().OGR_L_CreateField(l.layer, field.get(), TRUE) == OGRERR_NONE);
     }
-    l.feature.reset(OGRFeature::CreateFeature(l.layer->GetLayerDefn()));
+    l.feature.reset(api().OGR_F_Create(api().OGR_L_GetLayerDefn(l.layer)));
     check(scope, l.feature != nullptr);
     l.columns = spec.columns;
   }
@@ -199,13 +212,14 @@ struct LayerFile::Impl {
   /// The table as QGIS makes it when it saves a style itself.
   void write_styles(const GdalScope& scope, const std::vector<QgisStyle>& list) {
     const std::array<const char*, 2> creation{"FID=id", nullptr};
-    OGRLayer* const layer = dataset->CreateLayer("layer_styles", nullptr, wkbNone, const_cast<char**>(creation.data()));
+    OGRLayerH layer = api().GDALDatasetCreateLayer(dataset.get(), "layer_styles", nullptr, wkbNone,
+                                                   const_cast<char**>(creation.data()));
     check(scope, layer != nullptr);
     const auto add = [&](const char* column, OGRFieldType type, int width = 0, OGRFieldSubType sub = OFSTNone) {
-      OGRFieldDefn field(column, type);
-      field.SetWidth(width);
-      field.SetSubType(sub);
-      check(scope, layer->CreateField(&field) == OGRERR_NONE);
+      const Field field(api().OGR_Fld_Create(column, type));
+      api().OGR_Fld_SetWidth(field.get(), width);
+      api().OGR_Fld_SetSubType(field.get(), sub);
+      check(scope, api().OGR_L_CreateField(layer, field.get(), TRUE) == OGRERR_NONE);
     };
     add("f_table_catalog", OFTString, 256);
     add("f_table_schema", OFTString, 256);
@@ -220,20 +234,17 @@ struct LayerFile::Impl {
     add("ui", OFTString, 30);
     add("update_time", OFTDateTime);
     for (const QgisStyle& style : list) {
-      OGRFeature feature(layer->GetLayerDefn());
+      const Feature feature(api().OGR_F_Create(api().OGR_L_GetLayerDefn(layer)));
+      int column = 0;  // in the order of creation
+      const auto set = [&](const char* text) { api().OGR_F_SetFieldString(feature.get(), column++, text); };
       // QGIS looks for empty texts here, not for NULL.
-      feature.SetField("f_table_catalog", "");
-      feature.SetField("f_table_schema", "");
-      feature.SetField("f_table_name", style.layer.c_str());
-      feature.SetField("f_geometry_column", "geom");
-      feature.SetField("styleName", style.name.c_str());
-      feature.SetField("styleQML", style.qml.c_str());
-      feature.SetField("styleSLD", "");
-      feature.SetField("useAsDefault", style.is_default ? 1 : 0);
-      feature.SetField("description", style.description.c_str());
-      feature.SetField("owner", "");
-      feature.SetField("update_time", geopackage_time(options.data_time).c_str());
-      check(scope, layer->CreateFeature(&feature) == OGRERR_NONE);
+      set(""), set(""), set(style.layer.c_str()), set("geom");
+      set(style.name.c_str()), set(style.qml.c_str()), set("");
+      api().OGR_F_SetFieldInteger(feature.get(), column++, style.is_default ? 1 : 0);
+      set(style.description.c_str()), set("");
+      ++column;  // `ui` stays NULL
+      set(geopackage_time(options.data_time).c_str());
+      check(scope, api().OGR_L_CreateFeature(layer, feature.get()) == OGRERR_NONE);
     }
   }
 
@@ -243,18 +254,19 @@ struct LayerFile::Impl {
     std::error_code ignored;
     if (std::filesystem::exists(path, ignored))
       throw base::OutputError(path + ": cannot write: the file is there already. Choose another output folder.");
-    GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("GPKG");
+    GDALDriverH driver = api().GDALGetDriverByName("GPKG");
     if (driver == nullptr)
       throw base::OutputError(path +
                               ": cannot write: GDAL was built without GeoPackage. Install GDAL with SQLite, or leave "
                               "gpkg out of --formats.");
     made = true;
     const std::array<const char*, 2> creation{"VERSION=1.3", nullptr};
-    dataset.reset(driver->Create(path.c_str(), 0, 0, 0, GDT_Unknown, const_cast<char**>(creation.data())));
+    dataset.reset(api().GDALCreate(driver, path.c_str(), 0, 0, 0, GDT_Unknown, const_cast<char**>(creation.data())));
     check(scope, dataset != nullptr);
-    check(scope, srs.SetFromUserInput(options.crs.c_str()) == OGRERR_NONE);
-    srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    check(scope, dataset->StartTransaction() == OGRERR_NONE);
+    srs.reset(api().OSRNewSpatialReference(nullptr));
+    check(scope, api().OSRSetFromUserInput(srs.get(), options.crs.c_str()) == OGRERR_NONE);
+    api().OSRSetAxisMappingStrategy(srs.get(), OAMS_TRADITIONAL_GIS_ORDER);
+    check(scope, api().GDALDatasetStartTransaction(dataset.get(), FALSE) == OGRERR_NONE);
     for (const LayerSpec& spec : specs) make_layer(scope, spec);
     describe_columns(scope);
     if (!styles.empty()) write_styles(scope, styles);
@@ -262,32 +274,32 @@ struct LayerFile::Impl {
   }
 
   void put(const GdalScope& scope, Layer& to, const CellTable& rows) {
-    OGRFeature& feature = *to.feature;
+    OGRFeatureH feature = to.feature.get();
     const Cell* cell = rows.cells.data();
     for (std::size_t row = 0; row < rows.rows(); ++row) {
-      feature.SetFID(OGRNullFID);
+      api().OGR_F_SetFID(feature, OGRNullFID);
       for (int i = 0; i < static_cast<int>(rows.width); ++i, ++cell) {
         switch (cell->kind) {
           case Cell::Kind::null:
-            feature.SetFieldNull(i);
+            api().OGR_F_SetFieldNull(feature, i);
             break;
           case Cell::Kind::integer:
-            feature.SetField(i, static_cast<GIntBig>(cell->integer));
+            api().OGR_F_SetFieldInteger64(feature, i, static_cast<GIntBig>(cell->integer));
             break;
           case Cell::Kind::real:
-            feature.SetField(i, cell->real);
+            api().OGR_F_SetFieldDouble(feature, i, cell->real);
             break;
           case Cell::Kind::text:
-            feature.SetField(i, rows.texts.c_str() + cell->text);
+            api().OGR_F_SetFieldString(feature, i, rows.texts.c_str() + cell->text);
             break;
         }
       }
       const std::string_view wkb = rows.geometry(row);
-      OGRGeometry* geometry = nullptr;
+      OGRGeometryH geometry = nullptr;
       const OGRErr read =
-          wkb.empty() ? OGRERR_NONE : OGRGeometryFactory::createFromWkb(wkb.data(), nullptr, &geometry, wkb.size());
-      feature.SetGeometryDirectly(geometry);
-      check(scope, read == OGRERR_NONE && to.layer->CreateFeature(&feature) == OGRERR_NONE);
+          wkb.empty() ? OGRERR_NONE : api().OGR_G_CreateFromWkbEx(wkb.data(), nullptr, &geometry, wkb.size());
+      api().OGR_F_SetGeometryDirectly(feature, geometry);
+      check(scope, read == OGRERR_NONE && api().OGR_L_CreateFeature(to.layer, feature) == OGRERR_NONE);
     }
   }
 };
@@ -312,7 +324,7 @@ void LayerFile::close() {
   const GdalScope scope(impl.settings());
   for (const auto& l : impl.layers) {
     l->feature.reset();
-    impl.check(scope, l->layer->SyncToDisk() == OGRERR_NONE);
+    impl.check(scope, api().OGR_L_SyncToDisk(l->layer) == OGRERR_NONE);
     // The index in one go over finished rows: its pages lie together, and no trigger runs for each insert.
     const std::string table = sql_text(l->table);
     impl.sql(scope, "SELECT CreateSpatialIndex(" + table + ", 'geom')");
@@ -320,7 +332,7 @@ void LayerFile::close() {
     impl.sql(scope, "UPDATE gpkg_ogr_contents SET feature_count = (SELECT count(*) FROM \"" + l->table +
                         "\") WHERE table_name = " + table);
   }
-  impl.check(scope, impl.dataset->CommitTransaction() == OGRERR_NONE);
+  impl.check(scope, api().GDALDatasetCommitTransaction(impl.dataset.get()) == OGRERR_NONE);
   impl.dataset.reset();
   impl.check(scope, true);
   impl.closed = true;

@@ -15,6 +15,8 @@
 #include "pipeline/base/pack.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/base/version.h"
+#include "pipeline/gdal/gdal_library.h"
+#include "pipeline/georef/proj_library.h"
 #include "pipeline/run/configuration.h"
 
 namespace blockrand::run {
@@ -252,7 +254,9 @@ const std::string& program_identity() {
     } catch (const base::InputError&) {
       add("/proc/self/exe");
     }
-    // Libraries that it runs with, and PROJ's tables, by size and time of their files.
+    // Libraries that it runs with, and PROJ's tables, by size and time of their files. Those that are loaded when they are needed
+    // count as well: all runs must say the same.
+    gdal::api(), georef::detail::proj();
     ::dl_iterate_phdr(
         [](dl_phdr_info* info, std::size_t, void* data) {
           if (info->dlpi_name != nullptr && *info->dlpi_name != '\0')

@@ -5,6 +5,7 @@ import json
 import contextlib
 import os
 import pty
+import re
 import shutil
 import signal
 import subprocess
@@ -222,6 +223,34 @@ class BeforeReading(BuildTest):
                     self.refused(blockrand('build', broken, '-o', self.path('no'), *options, *where), code, *words, target=self.path('no'))
         for command in (['info', broken], ['districts', 'show', broken, '-o', self.path('no')]):
             self.refused(blockrand(*command, '--crs', 'EPSG:4326'), 1, 'not a projected')
+
+
+class Libraries(BuildTest):
+    """What a command does not need is not loaded: GDAL and PROJ bring ninety libraries."""
+
+    def loaded(self, *arguments):
+        done = subprocess.run([Setup.program, *map(str, arguments)], capture_output=True, text=True, timeout=300, env={**os.environ, 'LD_DEBUG': 'files', 'LD_DEBUG_OUTPUT': self.path('loaded')})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        names = set()
+        for file in os.listdir(self.folder):
+            if file.startswith('loaded.'):
+                with open(self.path(file), encoding='utf-8', errors='replace') as f:
+                    names.update(re.findall(r'file=([^\s/]+\.so[.\d]*) \[\d+\];  (?:needed|dynamically)', f.read()))
+                os.remove(self.path(file))
+        return names
+
+    def test_version(self):
+        names = self.loaded('--version')
+        self.assertTrue(any(n.startswith('libc.so') for n in names), names)
+        self.assertLess(len(names), 40, sorted(names))
+        self.assertFalse([n for n in names if n.startswith(('libgdal', 'libproj'))])
+
+    def test_a_build_that_needs_no_gdal(self):
+        names = self.loaded('build', SAMPLE, '-o', self.path('gltf'), *QUICK)
+        self.assertTrue(any(n.startswith('libproj') for n in names))
+        self.assertFalse([n for n in names if n.startswith('libgdal')])
+        names = self.loaded('build', SAMPLE, '-o', self.path('gpkg'), '--lod', '0', '--formats', 'gpkg', '--no-report')
+        self.assertTrue(any(n.startswith('libgdal') for n in names))
 
 
 if __name__ == '__main__':
