@@ -8,10 +8,51 @@
 #include <mutex>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace blockrand::base {
 namespace {
+
+/// Work of one item that others may take part in.
+class Shared {
+ public:
+  Shared(std::size_t count, const std::function<void(std::size_t)>& work) : end_(count), work_(work) {}
+
+  bool has_work() const { return next_ < end_; }
+  bool at_work() const { return running_ > 0; }
+
+  /// One item, if there is one left. \param lock  of the loop; free while it works
+  void take(std::unique_lock<std::mutex>& lock) {
+    const std::size_t i = next_++;
+    ++running_;
+    lock.unlock();
+    std::exception_ptr error;
+    try {
+      work_(i);
+    } catch (...) {
+      error = std::current_exception();
+    }
+    lock.lock();
+    --running_;
+    if (error && i < failed_) {
+      failed_ = i, error_ = error;
+      end_ = std::min(end_, i);  // items start in order: all below have begun
+    }
+  }
+
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  std::size_t end_, next_ = 0, running_ = 0, failed_ = ~std::size_t{0};
+  std::exception_ptr error_;
+  const std::function<void(std::size_t)>& work_;
+};
+
+class Loop;
+thread_local Loop* loop_of_thread = nullptr;
 
 class Loop {
  public:
@@ -21,6 +62,7 @@ class Loop {
 
   /// What every thread does until there is nothing left to start or to consume.
   void run() {
+    Loop* const outer = std::exchange(loop_of_thread, this);
     std::unique_lock lock(mutex_);
     while (consumed_ < end_) {
       if (!consuming_ && done_[consumed_ % in_flight_]) {
@@ -37,10 +79,35 @@ class Loop {
         call(lock, work_, i);
         if (i < end_) done_[i % in_flight_] = true;
         changed_.notify_all();
+      } else if (Shared* const shared = shared_work()) {
+        shared->take(lock);
+        changed_.notify_all();
       } else {
+        ++waiting_;
         changed_.wait(lock);
+        --waiting_;
       }
     }
+    loop_of_thread = outer;
+  }
+
+  /// \throws what `work` throws
+  void share(std::size_t count, const std::function<void(std::size_t)>& work) {
+    Shared shared(count, work);
+    std::unique_lock lock(mutex_);
+    shared_.push_back(&shared);
+    changed_.notify_all();
+    while (shared.has_work()) shared.take(lock);
+    // While others end it, this thread does not take up anything else: it would come back late.
+    while (shared.at_work()) changed_.wait(lock);
+    std::erase(shared_, &shared);
+    lock.unlock();
+    shared.rethrow();
+  }
+
+  std::size_t sharing_threads() {
+    const std::unique_lock lock(mutex_);
+    return waiting_ + 1;
   }
 
   void rethrow() const {
@@ -48,6 +115,13 @@ class Loop {
   }
 
  private:
+  Shared* shared_work() const {
+    // The newest first: what was shared within another's work holds that up.
+    for (auto s = shared_.rbegin(); s != shared_.rend(); ++s)
+      if ((*s)->has_work()) return *s;
+    return nullptr;
+  }
+
   void call(std::unique_lock<std::mutex>& lock, const std::function<void(std::size_t)>& function, std::size_t i) {
     lock.unlock();
     std::exception_ptr error;
@@ -74,6 +148,8 @@ class Loop {
   std::exception_ptr error_;
   const std::function<void(std::size_t)>& work_;
   const std::function<void(std::size_t)>& consume_;
+  std::vector<Shared*> shared_;  ///< in the order in which they were begun
+  std::size_t waiting_ = 0;      ///< threads that have nothing to do
 };
 
 }  // namespace
@@ -99,7 +175,7 @@ void ordered_parallel(std::size_t count, int workers, std::size_t in_flight,
   }
   Loop loop(count, in_flight, work, consume);
   std::vector<std::thread> threads;
-  const std::size_t helpers = std::min<std::size_t>(static_cast<std::size_t>(workers), in_flight) - 1;
+  const std::size_t helpers = static_cast<std::size_t>(workers) - 1;
   threads.reserve(helpers);
   try {
     for (std::size_t t = 0; t < helpers; ++t) threads.emplace_back([&loop] { loop.run(); });
@@ -110,5 +186,12 @@ void ordered_parallel(std::size_t count, int workers, std::size_t in_flight,
   for (std::thread& t : threads) t.join();
   loop.rethrow();
 }
+
+void share(std::size_t count, const std::function<void(std::size_t)>& work) {
+  if (loop_of_thread != nullptr && count > 1) return loop_of_thread->share(count, work);
+  for (std::size_t i = 0; i < count; ++i) work(i);
+}
+
+std::size_t sharing_threads() { return loop_of_thread != nullptr ? loop_of_thread->sharing_threads() : 1; }
 
 }  // namespace blockrand::base

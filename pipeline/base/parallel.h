@@ -1,4 +1,5 @@
-// The one parallel loop of the program: items are worked on in any order, results are consumed in item order.
+// The parallel loops of the program: items are worked on in any order, results are consumed in item order; and what one item does may
+// be shared with threads that have no item of their own.
 #pragma once
 
 #include <cstddef>
@@ -18,5 +19,15 @@ int worker_count(int jobs);
 /// throws is consumed, nothing from it on, and that exception is rethrown after all running items have ended.
 void ordered_parallel(std::size_t count, int workers, std::size_t in_flight,
                       const std::function<void(std::size_t)>& work, const std::function<void(std::size_t)>& consume);
+
+/// Calls `work(i)` for i in [0, count), in any order, and ends when all have ended. Within the work or consumption of an
+/// ordered_parallel() its threads that have nothing left to start help, so that a quarter of one tile does not run on one core;
+/// elsewhere the calling thread does all. May be nested. An exception is rethrown here, that of the lowest i; what was not
+/// begun by then is left out.
+void share(std::size_t count, const std::function<void(std::size_t)>& work);
+
+/// How many threads could work on what is shared now, at least 1: for dividing work. It says nothing of a moment later, so that no
+/// result may depend on it.
+std::size_t sharing_threads();
 
 }  // namespace blockrand::base

@@ -68,7 +68,7 @@ struct FinishedTile {
   std::string name;                                      ///< "15_17600_12900"
   bool has_parts = false;                                ///< a building has a body
   std::function<FinalState(std::uint32_t)> final_state;  ///< what becomes of object `mapped_index` of the extract
-  /// What outputs wrote so far, those before this one in all_outputs().
+  /// Gets what this output writes. For those with OutputFormat::names_files: what all others wrote comes first.
   std::vector<base::PublishedFile> files;
 };
 
@@ -140,6 +140,7 @@ struct OutputFormat {
   bool (*takes_regions)(const OutputOptions& options) = nullptr;  ///< null: never
   /// `finish` gets the whole build as one region, in memory.
   bool (*keeps_whole)(const OutputOptions& options) = nullptr;  ///< null: never
+  bool names_files = false;                                     ///< of its tile: it is written behind the others
   std::unique_ptr<Output> (*open)(const OutputContext& context) = nullptr;
 };
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <utility>
 
 #include "pipeline/base/pack.h"
+#include "pipeline/base/parallel.h"
 #include "pipeline/run/tile_key.h"
 
 namespace blockrand::run {
@@ -37,10 +39,35 @@ OpenOutputs::OpenOutputs(const outputs::OutputContext& context) {
   for (const outputs::OutputFormat& format : outputs::all_outputs()) {
     if (!format.asked(context.options)) continue;
     list.push_back(format.open(context));
+    names_files.push_back(format.names_files);
     takes_regions = takes_regions || (format.takes_regions && format.takes_regions(context.options));
     keeps_whole = keeps_whole || (format.keeps_whole && format.keeps_whole(context.options));
   }
 }
+
+namespace {
+
+/// Products and files, in the order of the outputs; each is written by whichever thread is free.
+void write_outputs(const outputs::FinishedTile& tile, const OpenOutputs& open, TileResult& result) {
+  result.products.resize(open.list.size());
+  std::vector<std::vector<base::PublishedFile>> written(open.list.size());
+  const auto write = [&](std::size_t i, std::vector<base::PublishedFile> files) {
+    outputs::FinishedTile own = tile;
+    own.files = std::move(files);
+    result.products[i] = open.list[i]->write_tile(own);
+    return std::move(own.files);
+  };
+  base::share(open.list.size(), [&](std::size_t i) {
+    if (!open.names_files[i]) written[i] = write(i, {});
+  });
+  for (std::vector<base::PublishedFile>& files : written)
+    result.files.insert(result.files.end(), std::make_move_iterator(files.begin()),
+                        std::make_move_iterator(files.end()));
+  for (std::size_t i = 0; i < open.list.size(); ++i)
+    if (open.names_files[i]) result.files = write(i, std::move(result.files));
+}
+
+}  // namespace
 
 TileResult work_on_tile(std::size_t shard, const TileInputs& inputs, const OpenOutputs& open, const Account& account) {
   const auto start = std::chrono::steady_clock::now();
@@ -49,15 +76,14 @@ TileResult work_on_tile(std::size_t shard, const TileInputs& inputs, const OpenO
   result.may_be_kept = positions_as_measured(region, inputs.repaired.first[shard], inputs.styles.facts);
   result.outcomes = decide_outcomes(region, inputs.lod);
   result.statistics = outputs::count_statistics(region);
-  outputs::FinishedTile tile{
+  const outputs::FinishedTile tile{
       .region = region,
       .shard = shard,
       .name = outputs::tile_name(region.tile),
       .has_parts = std::ranges::any_of(region.buildings, [](const model::Building& b) { return !b.parts.empty(); }),
       .final_state = account.final_states(result.outcomes.list),
       .files = {}};
-  for (const auto& output : open.list) result.products.push_back(output->write_tile(tile));
-  result.files = std::move(tile.files);
+  write_outputs(tile, open, result);
   result.rows = std::move(region.report.rows);
   if (open.takes_regions || open.keeps_whole) result.region = std::move(region);
   result.microseconds = static_cast<std::uint64_t>(

@@ -20,6 +20,7 @@ namespace blockrand::run {
 struct OpenOutputs {
   explicit OpenOutputs(const outputs::OutputContext& context);
   std::vector<std::unique_ptr<outputs::Output>> list;
+  std::vector<bool> names_files;  ///< parallel to list: OutputFormat::names_files
   bool takes_regions = false, keeps_whole = false;
 };
 

@@ -94,6 +94,7 @@ OutputFormat explain_output() {
           .manual = {{"explain/", "what 'blockrand explain' reads"}},
           .asked = [](const OutputOptions& o) { return o.explain; },
           .size = [](const OutputOptions&, std::size_t) { return OutputSize{.per_building = 1980}; },
+          .names_files = true,
           .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<ExplainOutput>(c); }};
 }
 

@@ -118,6 +118,66 @@ TEST(OrderedParallelEdge, ConsumersNeverOverlap) {
       });
 }
 
+TEST_P(OrderedParallel, WhatAnItemSharesIsDoneOnceAndBeforeItEnds) {
+  std::vector<std::vector<std::atomic<int>>> done(3);
+  for (auto& of : done) of = std::vector<std::atomic<int>>(200);
+  ordered_parallel(
+      done.size(), GetParam().workers, GetParam().in_flight,
+      [&](std::size_t i) {
+        share(done[i].size(), [&](std::size_t k) { ++done[i][k]; });
+        for (const std::atomic<int>& d : done[i]) EXPECT_EQ(d, 1);
+      },
+      [&](std::size_t i) { share(2, [&](std::size_t k) { done[i][k] += 10; }); });
+  for (const auto& of : done)
+    for (std::size_t k = 0; k < of.size(); ++k) EXPECT_EQ(of[k], k < 2 ? 11 : 1);
+}
+
+TEST_P(OrderedParallel, TheLowestSharedFailureIsThrownToItsItem) {
+  std::atomic<int> thrown = 0, inner = 0;
+  ordered_parallel(
+      4, GetParam().workers, GetParam().in_flight,
+      [&](std::size_t) {
+        try {
+          share(50, [&](std::size_t k) {
+            share(3, [&](std::size_t) { ++inner; });
+            if (k % 20 == 7) throw std::runtime_error(std::to_string(k));
+          });
+        } catch (const std::runtime_error& error) {
+          EXPECT_STREQ(error.what(), "7");
+          ++thrown;
+        }
+      },
+      [](std::size_t) {});
+  EXPECT_EQ(thrown, 4);
+  EXPECT_GE(inner, 4 * 8 * 3);
+}
+
+TEST(Share, IdleThreadsHelpTheOnlyItem) {
+  std::mutex mutex;
+  std::condition_variable both;
+  int inside = 0;
+  bool met = false;
+  ordered_parallel(
+      1, 2, 1,
+      [&](std::size_t) {
+        share(2, [&](std::size_t) {  // ends at once when two threads are within
+          std::unique_lock lock(mutex);
+          met = met || ++inside == 2;
+          both.notify_all();
+          both.wait_for(lock, std::chrono::seconds(60), [&] { return met; });
+        });
+      },
+      [](std::size_t) {});
+  EXPECT_TRUE(met);
+}
+
+TEST(Share, OutsideOfALoopTheCallerDoesAll) {
+  std::vector<std::size_t> order;
+  share(3, [&](std::size_t i) { order.push_back(i); });
+  EXPECT_EQ(order, (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_EQ(sharing_threads(), 1u);
+}
+
 TEST(WorkerCount, ZeroMeansOnePerCore) {
   EXPECT_GE(worker_count(0), 1);
   EXPECT_EQ(worker_count(3), 3);
