@@ -203,7 +203,8 @@ class Proof {
       box.include(solid_.vertices[i].xy());
     for (const std::uint32_t n : index_.near(box, kSure)) {
       const auto& [t, f] = others_[n];
-      if (f == wall.face || (changed_of_[f] != kNone && f < wall.face) || boxes_apart(t, wall.least, wall.most)) continue;
+      if (f == wall.face || (changed_of_[f] != kNone && f < wall.face) || boxes_apart(t, wall.least, wall.most))
+        continue;
       int before = 0, behind = 0;
       for (const std::uint32_t i : t) {
         const double h = wall.along_normal(solid_.vertices[i]);
