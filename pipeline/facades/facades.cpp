@@ -75,6 +75,7 @@ class FacadeBuilder {
       try_passages(part, walls);
       close_portals();
     }
+    take_parameters(*grammar, building);
     for (const FacadeSegment& segment : segments) {
       if (segment.kind == model::WallSegmentKind::party_wall || segment.kind == model::WallSegmentKind::unknown)
         continue;
@@ -90,15 +91,12 @@ class FacadeBuilder {
     grammar::Shape shape = wall_shape(wall);
     if (context.segment.from > 0 || context.segment.to < wall.length)
       shape = grammar::cut_piece(shape, 0, context.segment.from, context.segment.to, false);
-    grammar::DeriveOptions options;
+    grammar::DeriveOptions& options = derive_options_;
     const std::string place =
         fmt::format("{}/{}/{}", context.part.id, wall.face, static_cast<int>(std::floor(context.segment.from * 16)));
     options.seed = base::random_bits(seed, base::hash_text(place), "stretch");
     options.building_seed = seed;
     options.row_seed = row;
-    // The first of a name counts: what district rules and overrides say is stronger than the preset's own values.
-    for (const auto& [name, value] : context.building.preset_parameters) options.attributes.emplace_back(name, value);
-    options.attributes.insert(options.attributes.end(), grammar.attributes.begin(), grammar.attributes.end());
     options.source = [&](std::string_view name) { return context_value(context, name); };
     options.limits.shapes = options_.most_shapes;
     const grammar::Derivation derivation = grammar.deriver->run(shape, options);
@@ -106,6 +104,21 @@ class FacadeBuilder {
       if (d.severity == grammar::Severity::error) tell(d.message);
     for (const grammar::Leaf& leaf : derivation.leaves)
       if (leaf.order) take(context, leaf);
+  }
+
+  /// What rules of a preset get from outside, the same for all walls of a building.
+  void take_parameters(const GrammarLibrary::Entry& grammar, const model::Building& building) {
+    if (derived_for_ == &grammar && parameters_ == building.preset_parameters) return;
+    derived_for_ = &grammar;
+    parameters_ = building.preset_parameters;
+    auto& attributes = derive_options_.attributes;
+    attributes.clear();
+    // The first of a name counts: what district rules and overrides say is stronger than the preset's own values.
+    for (const auto& [name, value] : parameters_) attributes.emplace_back(name, value);
+    attributes.insert(attributes.end(), grammar.attributes.begin(), grammar.attributes.end());
+    outside_ = grammar.deriver->outside_values(attributes);
+    derive_options_.outside = &outside_;
+    derive_options_.orders_only = true;
   }
 
   static grammar::Shape wall_shape(const WallFrame& wall) {
@@ -398,6 +411,10 @@ class FacadeBuilder {
   const FacadeOptions& options_;
   ElementLibrary library_;
   CornerRounding rounding_ = CornerRounding::nearest;  ///< of the part at work
+  grammar::DeriveOptions derive_options_;
+  const GrammarLibrary::Entry* derived_for_ = nullptr;  ///< whose values derive_options_ holds, with these parameters
+  decltype(model::Building::preset_parameters) parameters_;
+  std::vector<std::uint32_t> outside_;
   std::vector<Asked> asked_;
   std::vector<PassagePortal> portals_;
   std::size_t portal_elements_ = 0;  ///< the first of asked_: what close_portals() put there

@@ -29,13 +29,14 @@ constexpr double kNearlyAcross = 0.9;
 /// A direction of the plan in grid steps, into the building.
 using Inward = std::array<std::int64_t, 2>;
 
-struct OpenedWall {
+/// A face that is not what it was: a wall with openings, or a face with points on its border.
+struct ChangedFace {
   std::uint32_t face = 0;
   Point3 origin;
   double nx = 0, ny = 0, nz = 0;  ///< unit normal
   double low = 0, high = 0;       ///< m along the normal, of all its corners
   Grid3 least, most;
-  std::vector<Inward> views;
+  std::vector<Inward> views;  ///< none where it has no openings
   double along_normal(const Point3& p) const {
     return (p.x - origin.x) * nx + (p.y - origin.y) * ny + (p.z - origin.z) * nz;
   }
@@ -47,36 +48,40 @@ class Proof {
       : opened_(opened), solid_(opened.solid), triangles_(triangles) {}
 
   bool holds() {
-    if (opened_.borders_changed) return false;
     for (const model::Opening& o : opened_.openings)
       if (o.kind == model::OpeningKind::passage) return false;
     if (triangles_.first.size() != solid_.faces.size() + 1) return false;
     grid_.resize(solid_.vertices.size());
     for (std::size_t i = 0; i < grid_.size(); ++i) grid_[i] = geometry::to_grid(solid_.vertices[i]);
-    wall_of_.assign(solid_.faces.size(), kNone);
+    if (doubled_border_point()) return false;
+    changed_of_.assign(solid_.faces.size(), kNone);
     is_new_.assign(solid_.faces.size(), false);
     for (const model::Opening& o : opened_.openings) {
       is_new_[o.polygon] = true;
       for (std::uint32_t r = 0; r < o.reveal_count; ++r) is_new_[o.first_reveal + r] = true;
-      if (wall_of_[o.wall] != kNone) continue;
-      wall_of_[o.wall] = static_cast<std::uint32_t>(walls_.size());
-      auto wall = thin_wall(o.wall);
-      if (!wall || geometry::normal_deviation(solid_, solid_.faces[o.wall]) > geometry::kBuilt.normal_deviation)
+      if (changed_of_[o.wall] != kNone) continue;
+      if (!add_changed(o.wall) || !is_thin_wall(changed_.back())) return false;
+      if (!std::binary_search(opened_.changed_borders.begin(), opened_.changed_borders.end(), o.wall) &&
+          !std::binary_search(opened_.unfolded.begin(), opened_.unfolded.end(), o.wall) &&
+          geometry::normal_deviation(solid_, solid_.faces[o.wall]) > geometry::kBuilt.normal_deviation)
         return false;
-      walls_.push_back(std::move(*wall));
+    }
+    for (const std::uint32_t f : opened_.changed_borders) {
+      if (!geometry::sound_polygon(solid_, f, !triangles_of(f).empty(), grid_, geometry::kBuilt)) return false;
+      if (changed_of_[f] == kNone && !add_changed(f)) return false;
     }
     for (const model::Opening& o : opened_.openings) {
-      OpenedWall& wall = walls_[wall_of_[o.wall]];
+      ChangedFace& wall = changed_[changed_of_[o.wall]];
       const auto in = inward(o, wall);
       if (!in || !turns_left(o.polygon, *in)) return false;
       if (std::find(wall.views.begin(), wall.views.end(), *in) == wall.views.end()) wall.views.push_back(*in);
     }
-    for (const OpenedWall& wall : walls_)
+    for (const ChangedFace& wall : changed_)
       for (const Inward& in : wall.views)
         if (!turns_left(wall.face, in)) return false;
     index_others();
-    for (const OpenedWall& wall : walls_)
-      if (meets_others(wall)) return false;
+    for (const ChangedFace& face : changed_)
+      if (meets_others(face)) return false;
     return true;
   }
 
@@ -88,8 +93,24 @@ class Proof {
         .subspan(triangles_.first[face], triangles_.first[face + 1] - triangles_.first[face]);
   }
 
-  std::optional<OpenedWall> thin_wall(std::uint32_t face) const {
-    OpenedWall wall;
+  /// Whether a point on a border lies where another vertex is.
+  bool doubled_border_point() const {
+    if (opened_.changed_borders.empty()) return false;
+    std::vector<Grid3> added(grid_.begin() + opened_.first_border_point, grid_.end());
+    std::sort(added.begin(), added.end());
+    if (std::adjacent_find(added.begin(), added.end()) != added.end()) return true;
+    return std::any_of(grid_.begin(), grid_.begin() + opened_.first_border_point,
+                       [&](const Grid3& p) { return std::binary_search(added.begin(), added.end(), p); });
+  }
+
+  static bool is_thin_wall(const ChangedFace& wall) {
+    return std::fabs(wall.nz) <= kMostLean * std::sqrt(wall.nx * wall.nx + wall.ny * wall.ny) &&
+           wall.high - wall.low <= kThickest;
+  }
+
+  /// \return false where it has no area
+  bool add_changed(std::uint32_t face) {
+    ChangedFace wall;
     wall.face = face;
     const auto loops = solid_.loops_of(solid_.faces[face]);
     const auto outer = solid_.indices_of(loops[0]);
@@ -108,23 +129,23 @@ class Proof {
       wall.most = {std::max(wall.most.x, g.x), std::max(wall.most.y, g.y), std::max(wall.most.z, g.z)};
     }
     const double size = std::sqrt(wall.nx * wall.nx + wall.ny * wall.ny + wall.nz * wall.nz);
-    if (!(size > 0)) return std::nullopt;
+    if (!(size > 0)) return false;
     wall.nx /= size;
     wall.ny /= size;
     wall.nz /= size;
-    if (std::fabs(wall.nz) > kMostLean * std::sqrt(wall.nx * wall.nx + wall.ny * wall.ny)) return std::nullopt;
     for (const auto& loop : loops)
       for (const std::uint32_t i : solid_.indices_of(loop)) {
         const double h = wall.along_normal(solid_.vertices[i]);
         wall.low = std::min(wall.low, h);
         wall.high = std::max(wall.high, h);
       }
-    if (wall.high - wall.low > kThickest) return std::nullopt;
-    return wall;
+    changed_of_[face] = static_cast<std::uint32_t>(changed_.size());
+    changed_.push_back(std::move(wall));
+    return true;
   }
 
   /// Which way the reveal goes; of flush openings the axis nearest to it.
-  std::optional<Inward> inward(const model::Opening& o, const OpenedWall& wall) const {
+  std::optional<Inward> inward(const model::Opening& o, const ChangedFace& wall) const {
     if (o.reveal_count == 0) {
       if (std::fabs(wall.nx) >= std::fabs(wall.ny)) return Inward{wall.nx > 0 ? -1 : 1, 0};
       return Inward{0, wall.ny > 0 ? -1 : 1};
@@ -174,15 +195,16 @@ class Proof {
     index_ = geometry::BoxIndex(std::move(boxes));
   }
 
-  /// Whether a triangle of the wall conflicts with one of another face that is no reveal.
-  bool meets_others(const OpenedWall& wall) {
+  /// Whether a triangle of a changed face conflicts with one of another face that is no reveal.
+  bool meets_others(const ChangedFace& wall) {
     near_.clear();
     geometry::PlanBox box;
     for (const std::uint32_t i : solid_.indices_of(solid_.loops_of(solid_.faces[wall.face])[0]))
       box.include(solid_.vertices[i].xy());
     for (const std::uint32_t n : index_.near(box, kSure)) {
       const auto& [t, f] = others_[n];
-      if (f == wall.face || (wall_of_[f] != kNone && f < wall.face) || boxes_apart(t, wall.least, wall.most)) continue;
+      if (f == wall.face || (changed_of_[f] != kNone && f < wall.face) || boxes_apart(t, wall.least, wall.most))
+        continue;
       int before = 0, behind = 0;
       for (const std::uint32_t i : t) {
         const double h = wall.along_normal(solid_.vertices[i]);
@@ -208,8 +230,8 @@ class Proof {
   const model::Solid& solid_;
   const model::SolidTriangles& triangles_;
   std::vector<Grid3> grid_;
-  std::vector<OpenedWall> walls_;
-  std::vector<std::uint32_t> wall_of_;                      ///< by face: into walls_
+  std::vector<ChangedFace> changed_;
+  std::vector<std::uint32_t> changed_of_;                   ///< by face: into changed_
   std::vector<bool> is_new_;                                ///< by face: a reveal, or an opening's polygon
   std::vector<std::pair<Triangle, std::uint32_t>> others_;  ///< with their faces
   geometry::BoxIndex index_;                                ///< of others_

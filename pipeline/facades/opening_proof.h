@@ -34,7 +34,13 @@ namespace blockrand::facades {
 ///    check_solid's own test (geometry::triangles_conflict). Faces that lie on one side of the wall's corners are out of
 ///    the question at once; this leaves its neighbours' borders.
 /// Pairs of faces that stayed as they were have been checked with the closed solid.
-/// Solids with passages, whose sides are no prisms, and those whose borders changed are left to check_solid.
+///
+/// Faces that got points on their border (OpenedSolid::changed_borders): both faces of an edge got the same, so that
+/// the shell stays what it was. Points lie on their edge but for rounding, a centimetre from its ends; blocks keep ten
+/// times that off, so that reveals meet these faces as little as before. Tested are:
+/// 4. No such point lies where another vertex is.
+/// 5. Each such face by check_solid's rules of polygons (geometry::sound_polygon), and as in 3.
+/// Solids with passages, whose sides are no prisms, are left to check_solid.
 ///
 /// \param triangles  of opened.solid, by geometry::triangulate; of faces that are not opened those that were checked
 bool proved_valid(const OpenedSolid& opened, const model::SolidTriangles& triangles);

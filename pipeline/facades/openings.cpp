@@ -196,17 +196,28 @@ class Assembly {
   const Point3& point(std::uint32_t i) const { return out_.vertices[i]; }
   const model::Face& face(std::uint32_t wall) const { return solid_.faces[walls_[wall].face]; }
 
-  model::Solid take() {
-    for (std::uint32_t f = 0; f < solid_.faces.size(); ++f)
-      if (!holes_[f].empty() && folds(f)) add_feet(f);
-    for (std::size_t f = 0; f < solid_.faces.size(); ++f) {
+  /// Writes the solid, and what is known of its faces.
+  void take(OpenedSolid& out) {
+    std::vector<bool> unfolded(solid_.faces.size(), false);
+    out.first_border_point = static_cast<std::uint32_t>(out_.vertices.size());
+    for (std::uint32_t f = 0; f < solid_.faces.size(); ++f) {
+      if (holes_[f].empty()) continue;
+      unfolded[f] = !folds(f);
+      if (!unfolded[f]) add_feet(f);
+    }
+    for (std::uint32_t f = 0; f < solid_.faces.size(); ++f) {
       model::Face face = solid_.faces[f];
       const auto loops = solid_.loops_of(face);
       face.first_loop = static_cast<std::uint32_t>(out_.loops.size());
-      for (const auto& loop : loops) add_loop(solid_.indices_of(loop));
+      bool changed = false;
+      for (const auto& loop : loops) changed = add_loop(solid_.indices_of(loop)) || changed;
       for (const auto& hole : holes_[f]) add_loop(hole);
       face.loop_count = static_cast<std::uint32_t>(out_.loops.size()) - face.first_loop;
       out_.faces.push_back(face);
+      if (changed)
+        out.changed_borders.push_back(f);
+      else if (unfolded[f])
+        out.unfolded.push_back(f);
     }
     for (const auto& [ring, looks] : added_) {
       model::Face face = looks;
@@ -215,28 +226,30 @@ class Assembly {
       add_loop(ring);
       out_.faces.push_back(face);
     }
-    return std::move(out_);
+    out.solid = std::move(out_);
   }
-
-  /// Points that were put into borders of faces.
-  bool borders_changed() const { return !feet_.empty(); }
 
  private:
   using Edge = std::pair<std::uint32_t, std::uint32_t>;  ///< the smaller index first
 
-  void add_loop(std::span<const std::uint32_t> ring) {
+  /// \return whether it got points
+  bool add_loop(std::span<const std::uint32_t> ring) {
     const auto first = static_cast<std::uint32_t>(out_.indices.size());
+    bool changed = false;
     for (std::size_t i = 0; i < ring.size(); ++i) {
-      const std::uint32_t from = ring[i], to = ring[(i + 1) % ring.size()];
+      const std::uint32_t from = ring[i], to = ring[i + 1 == ring.size() ? 0 : i + 1];
       out_.indices.push_back(from);
+      if (feet_.empty()) continue;
       const auto feet = feet_.find(std::minmax(from, to));
       if (feet == feet_.end()) continue;
+      changed = changed || !feet->second.empty();
       if (from < to)
         out_.indices.insert(out_.indices.end(), feet->second.begin(), feet->second.end());
       else
         out_.indices.insert(out_.indices.end(), feet->second.rbegin(), feet->second.rend());
     }
     out_.loops.push_back({first, static_cast<std::uint32_t>(out_.indices.size()) - first});
+    return changed;
   }
 
   bool folds(std::uint32_t face) const {
@@ -396,8 +409,7 @@ OpenedSolid cut_openings(const model::Solid& solid, std::span<const WallFrame> w
     out.openings.push_back(second);
     out.given.push_back(o.through);
   }
-  out.solid = assembly.take();
-  out.borders_changed = assembly.borders_changed();
+  assembly.take(out);
   return out;
 }
 

@@ -61,8 +61,12 @@ struct OpenedSolid {
   std::vector<std::uint32_t> given;      ///< for each of them its index among those given
   std::vector<OpeningRefusal> refusals;  ///< for each one given; `none` for those that were cut
   /// Walls that would fold by rounding (geometry::normal_deviation) got points on their border next to openings, and so
-  /// did the faces that they share it with.
-  bool borders_changed = false;
+  /// did the faces that they share it with: all of these, ascending. The points are the last of solid.vertices.
+  std::vector<std::uint32_t> changed_borders;
+  std::uint32_t first_border_point = 0;
+  /// Walls with holes whose border stayed, measured as they are: they do not fold by more than geometry::kBuilt allows.
+  /// Ascending.
+  std::vector<std::uint32_t> unfolded;
 };
 
 /// Cuts openings in the order given: one that does not fit is left out, and never harms those before it.

@@ -299,6 +299,12 @@ SolidCheck classify_face(const Solid& solid, std::uint32_t number, std::span<con
   return {};
 }
 
+/// The rules of a polygon but how far it folds and how its holes turn.
+bool is_flat_and_simple(const Solid& solid, const Face& face, const FacePlane& plane, bool triangulated,
+                        const SolidCheckOptions& options) {
+  return triangulated && off_plane(solid, face, plane) <= options.planarity && simple_along_normal(solid, face, plane);
+}
+
 /// Rings and polygons: 1xx and 2xx. Every loop has three vertices that exist.
 SolidCheck check_faces(const Solid& solid, const SolidTriangles& triangles, std::span<const Grid3> grid,
                        const SolidCheckOptions& options) {
@@ -310,9 +316,7 @@ SolidCheck check_faces(const Solid& solid, const SolidTriangles& triangles, std:
   for (std::uint32_t f = 0; f < solid.faces.size(); ++f) {
     const Face& face = solid.faces[f];
     const FacePlane plane = plane_of(solid, face);
-    const double off = off_plane(solid, face, plane);
-    if (triangles.first[f] == triangles.first[f + 1] || off > options.planarity ||
-        !simple_along_normal(solid, face, plane)) {
+    if (!is_flat_and_simple(solid, face, plane, triangles.first[f] != triangles.first[f + 1], options)) {
       const SolidCheck c = classify_face(solid, f, grid, options);
       return c.valid() ? SolidCheck{SolidDefect::ring_crosses, f} : c;
     }
@@ -452,6 +456,15 @@ SolidCheck check_solid(const Solid& solid) {
   if (const SolidCheck c = walk_loops(solid, half_edges); !c.valid()) return c;
   const auto triangles = triangulate(solid);
   return check_sound_loops(solid, triangles ? *triangles : SolidTriangles{}, half_edges, {});
+}
+
+bool sound_polygon(const Solid& solid, std::uint32_t number, bool triangulated, std::span<const Grid3> vertices,
+                   const SolidCheckOptions& options) {
+  const Face& face = solid.faces[number];
+  const FacePlane plane = plane_of(solid, face);
+  return is_flat_and_simple(solid, face, plane, triangulated, options) &&
+         normal_deviation(solid, face) <= options.normal_deviation &&
+         (face.loop_count == 1 || turned_hole(solid, face, plane, vertices) == 0);
 }
 
 SolidCheck check_mesh(std::span<const Grid3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles) {

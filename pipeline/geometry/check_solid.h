@@ -46,6 +46,12 @@ SolidCheck check_solid(const model::Solid& solid, const model::SolidTriangles& t
 /// As above; triangulates by itself once that is safe. For solids that may hold anything.
 SolidCheck check_solid(const model::Solid& solid);
 
+/// The rules of polygons (2xx) of one face alone, as check_solid has them. For those who know the rest.
+/// \param triangulated  whether geometry::triangulate found triangles in it
+/// \param vertices  the solid's, on the grid
+bool sound_polygon(const model::Solid& solid, std::uint32_t face, bool triangulated, std::span<const Grid3> vertices,
+                   const SolidCheckOptions& options);
+
 /// As above for a mesh of triangles (counter-clockwise from outside) that was read from a file: vertices in whole
 /// steps of any size, equal positions merged by the caller.
 SolidCheck check_mesh(std::span<const Grid3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles);

@@ -2,6 +2,7 @@
 // (docs/rule_language.md §1.2, §3.2).
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <string>
 #include <tl/expected.hpp>
@@ -33,6 +34,26 @@ ValueResult make_array(std::span<const std::vector<Value>> rows);
 ValueResult index_value(const Value& array, const Value& index);
 /// `array[row, column]`.
 ValueResult index_value(const Value& array, const Value& row, const Value& column);
+
+/// Of a comparison.
+template <typename T>
+bool compare(Operator op, const T& a, const T& b) {
+  if (op == Operator::equal) return a == b;
+  if (op == Operator::not_equal) return !(a == b);
+  if (op == Operator::less) return a < b;
+  if (op == Operator::less_equal) return a <= b;
+  if (op == Operator::greater) return a > b;
+  return op == Operator::greater_equal && a >= b;
+}
+
+/// Of an arithmetic operator.
+inline double calculate(Operator op, double a, double b) {
+  if (op == Operator::add) return a + b;
+  if (op == Operator::subtract) return a - b;
+  if (op == Operator::multiply) return a * b;
+  if (op == Operator::divide) return a / b;
+  return std::fmod(a, b);
+}
 
 ValueResult apply_unary(Operator op, const Value& value);
 /// All but && and ||, which do not evaluate what they need not, and are the evaluator's; their values may come here.

@@ -67,6 +67,13 @@ Derivation Deriver::run(const Shape& initial, const DeriveOptions& options) cons
   return second.go();
 }
 
+std::vector<std::uint32_t> Deriver::outside_values(
+    const std::vector<std::pair<std::string, Value>>& attributes) const {
+  std::vector<std::uint32_t> out;
+  for (const Slot& slot : prepared_->program.slots) out.push_back(find_outside(slot, attributes));
+  return out;
+}
+
 Derivation derive(const Program& program, const Shape& initial, const DeriveOptions& options) {
   return Deriver(program).run(initial, options);
 }
@@ -185,7 +192,7 @@ Derivation Run::go() {
     out_.tree.push_back({.symbol = root.symbol, .definition = start, .location = root.location, .shape = root.shape});
   level_.push_back(std::move(root));
   while (!level_.empty()) {
-    for (Node& node : level_) apply(std::move(node));
+    for (Node& node : level_) apply(node);
     level_.clear();
     std::swap(level_, next_);
   }
@@ -197,7 +204,7 @@ Derivation Run::go() {
   return std::move(out_);
 }
 
-void Run::apply(Node node) {
+void Run::apply(Node& node) {
   const Definition& definition = program_.definitions[node.definition];
   const Declaration& declaration = program_.declaration(definition);
   const RuleFacts& facts = facts_[node.definition];
@@ -225,6 +232,7 @@ void Run::apply(Node node) {
 void Run::leave_leaf(std::string symbol, Shape shape, const Location& location, std::uint32_t node,
                      std::uint32_t lineage, std::shared_ptr<const ElementRequest> order) {
   keep_occluder(shape, lineage);
+  if (options_.orders_only && order == nullptr) return;
   out_.leaves.push_back({std::move(symbol), std::move(shape), std::move(order), node, location});
 }
 

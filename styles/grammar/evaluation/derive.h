@@ -53,6 +53,10 @@ struct DeriveOptions {
   std::string shape_name;  ///< `initialShape.name`
   DeriveLimits limits;
   bool keep_tree = false;  ///< fill Derivation::tree
+  /// Only leaves with orders and what is told are wanted: no other leaves, no values of attributes, no notes of unused ones.
+  bool orders_only = false;
+  /// Deriver::outside_values() of `attributes`, where somebody has them ready; else they are looked for.
+  const std::vector<std::uint32_t>* outside = nullptr;
   /// For tests: a name of the language that does nothing. Operations leave the shape as it is, functions and attributes
   /// have the default value of their type, selectors choose nothing. What holds with the name and not without it is
   /// the name's own work (docs/grammar_features.md).
@@ -115,6 +119,8 @@ class Deriver {
   ~Deriver();
   Deriver(Deriver&&) noexcept;
   Derivation run(const Shape& initial, const DeriveOptions& options = {}) const;
+  /// By slot of the program: which of the attributes from outside gives its value; kNone: none.
+  std::vector<std::uint32_t> outside_values(const std::vector<std::pair<std::string, Value>>& attributes) const;
 
  private:
   struct Prepared;

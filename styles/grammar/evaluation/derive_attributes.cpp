@@ -48,14 +48,22 @@ bool turn_into(Type type, Value& value) {
 
 }  // namespace
 
-Value Run::outside_value(const Slot& slot, bool& found) {
-  found = false;
-  if (slot.constant) return 0.0;
-  const auto given = std::find_if(options_.attributes.begin(), options_.attributes.end(), [&](const auto& one) {
+std::uint32_t find_outside(const Slot& slot, const std::vector<std::pair<std::string, Value>>& attributes) {
+  if (slot.constant) return kNone;
+  const auto given = std::find_if(attributes.begin(), attributes.end(), [&](const auto& one) {
     return one.first == slot.name ||
            (one.first.find(':') != std::string::npos && attribute_name(one.first) == slot.name);
   });
-  if (given == options_.attributes.end()) return 0.0;
+  return given == attributes.end() ? kNone : static_cast<std::uint32_t>(given - attributes.begin());
+}
+
+Value Run::outside_value(std::uint32_t index, bool& found) {
+  const Slot& slot = program_.slots[index];
+  found = false;
+  const std::uint32_t number =
+      options_.outside != nullptr ? (*options_.outside)[index] : find_outside(slot, options_.attributes);
+  if (number == kNone) return 0.0;
+  const auto given = options_.attributes.begin() + number;
   Value value = given->second;
   const Definition& definition = program_.definitions[slot.definition];
   std::optional<Type> type = definition.result;
@@ -88,7 +96,7 @@ void Run::evaluate_slot(std::uint32_t index) {
   const bool own = slot.module == definition.module && slot.value == declaration.value;
   bool found = false;
   Value value = 0.0;
-  if (phase.outside || own) value = outside_value(slot, found);
+  if (phase.outside || own) value = outside_value(index, found);
   if (!found && slot.source_slot != kNone) {
     if (phase.state[slot.source_slot] == 0) evaluate_slot(slot.source_slot);
     value = phase.values[slot.source_slot];
@@ -97,12 +105,13 @@ void Run::evaluate_slot(std::uint32_t index) {
   if (!found && slot.value != kNone && !too_deep(declaration.location)) {
     // A stream of random numbers of its own: no attribute disturbs another, nor the shape
     // (docs/rule_language.md §4.1, 3).
-    Shape shape = *phase.shape;
+    Shape& shape = phase.shape;
+    const auto [seed_before, draws_before] = std::pair(shape.seed, shape.draws);
     // @Consistent before an attribute: one value in all derivations of a building, or of a row.
     const Consistency consistency = facts_[slot.definition].consistency;
     shape.seed = base::random_bits(consistency == Consistency::row        ? options_.row_seed
                                    : consistency == Consistency::building ? options_.building_seed
-                                                                          : shape.seed,
+                                                                          : initial_.seed,
                                    0, slot.name);
     shape.draws = 0;
     const std::size_t frame = locals_.size();
@@ -120,6 +129,8 @@ void Run::evaluate_slot(std::uint32_t index) {
     value = evaluate(slot.value, place);
     --function_depth_;
     locals_.resize(frame);
+    shape.seed = seed_before;
+    shape.draws = draws_before;
   }
   phase.values[index] = std::move(value);
   phase.state[index] = 2;
@@ -129,19 +140,20 @@ void Run::evaluate_attributes() {
   AttributePhase phase;
   phase.values.assign(program_.slots.size(), 0.0);
   phase.state.assign(program_.slots.size(), 0);
-  phase.shape = &initial_;
+  phase.shape = initial_;
   phase_ = &phase;
   for (const std::uint32_t slot : program_.slot_order) evaluate_slot(slot);
   phase_ = nullptr;
+  initial_.attributes = std::make_shared<const std::vector<Value>>(std::move(phase.values));
+  if (options_.orders_only) return;
   for (const std::uint32_t slot : program_.slot_order)
-    if (!program_.slots[slot].constant) out_.attributes.emplace_back(program_.slots[slot].name, phase.values[slot]);
+    if (!program_.slots[slot].constant) out_.attributes.emplace_back(program_.slots[slot].name, (*initial_.attributes)[slot]);
   for (const auto& [name, value] : options_.attributes) {
     const std::string wanted = attribute_name(name);
     if (is_engine_prefix(name.substr(0, name.find('.')))) continue;
     if (std::none_of(program_.slots.begin(), program_.slots.end(), [&](const Slot& s) { return s.name == wanted; }))
       tell(Severity::note, "unused_value", {}, "no attribute of this name takes the value from outside", name);
   }
-  initial_.attributes = std::make_shared<const std::vector<Value>>(std::move(phase.values));
 }
 
 void Run::enter_dynamic(std::uint32_t module, Shape& shape, Place& importer) {
@@ -151,7 +163,7 @@ void Run::enter_dynamic(std::uint32_t module, Shape& shape, Place& importer) {
   phase.state.assign(program_.slots.size(), 2);
   const std::vector<std::uint32_t>& slots = program_.modules[module].dynamic_slots;
   for (const std::uint32_t slot : slots) phase.state[slot] = 0;
-  phase.shape = &initial_;
+  phase.shape = initial_;
   phase.importer = &importer;
   phase.outside = false;
   AttributePhase* const before = phase_;

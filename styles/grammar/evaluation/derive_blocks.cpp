@@ -19,20 +19,14 @@ void Run::run_item(NodeId successor, Shape piece, Work& parent, Place& place) {
   const std::uint32_t lineage = child_lineage(parent);
   piece.seed = child_seed(parent);
   piece.draws = 0;
-  Work inner;
+  // What operations relate to is the piece as it was; a lone symbol relates to nothing.
+  std::optional<Shape> base;
   const bool single =
       item.kind == SuccessorKind::steps && item.steps.count == 1 && unit.steps[item.steps.first].kind == StepKind::call;
-  Shape base;
-  if (single) {  // what a lone operation relates to is the piece as it was; a lone symbol relates to nothing
-    const Call& call = unit.calls[unit.steps[item.steps.first].call];
-    if (target(place.module, call.use).kind == TargetKind::operation) base = piece;
-    inner.base = &base;
-  } else {
+  if (!single ||
+      target(place.module, unit.calls[unit.steps[item.steps.first].call].use).kind == TargetKind::operation)
     base = piece;
-    inner.base = &base;
-  }
-  inner.shape = std::move(piece);
-  inner.lineage = lineage;
+  Work inner{.shape = std::move(piece), .base = base ? &*base : nullptr, .lineage = lineage};
   Place there = place;
   there.shape = &inner.shape;
   there.lineage = lineage;

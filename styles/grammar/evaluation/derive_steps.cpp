@@ -65,7 +65,7 @@ void Run::execute_call(const Call& call, Work& work, Place& place, bool last) {
   if (found.kind == TargetKind::operation) {
     execute_operation(call, found.index, work, place);
   } else if (found.kind == TargetKind::extension) {
-    execute_request(call, work, place);
+    execute_request(call, work, place, last);
   } else {
     execute_symbol(call, found, work, place, last);
   }
@@ -139,18 +139,20 @@ void Run::execute_symbol(const Call& call, const Target& found, Work& work, Plac
     leave_leaf(std::move(child.symbol), std::move(child.shape), location, number, child.lineage);
 }
 
-void Run::execute_request(const Call& call, Work& work, Place& place) {
+void Run::execute_request(const Call& call, Work& work, Place& place, bool last) {
   const std::size_t first = push_arguments(call.arguments, place);
   auto order = std::make_shared<ElementRequest>();
   const std::string& name = program_.unit(place.module).name(call.name);
   order->name = name.substr(name.find('.') == std::string::npos ? 0 : name.find('.') + 1);
-  order->arguments.assign(locals_.begin() + static_cast<std::ptrdiff_t>(first), locals_.end());
+  order->arguments.assign(std::make_move_iterator(locals_.begin() + static_cast<std::ptrdiff_t>(first)),
+                          std::make_move_iterator(locals_.end()));
   order->location = call.location;
   locals_.resize(first);
   work.produced = true;
-  Shape shape = work.shape;
   const std::uint32_t lineage = child_lineage(work);
-  shape.seed = child_seed(work);
+  const std::uint64_t seed = child_seed(work);
+  Shape shape = last ? std::move(work.shape) : work.shape;
+  shape.seed = seed;
   shape.draws = 0;
   leave_leaf(name, std::move(shape), call.location, node_->number, lineage, std::move(order));
 }

@@ -46,14 +46,9 @@ Value Run::evaluate(NodeId id, Place& place) {
       return e.number != 0;
     case ExpressionKind::name:
       return evaluate_name(e, place);
-    case ExpressionKind::unary: {
-      auto result = apply_unary(e.op, evaluate(e.first, place));
-      if (result) return std::move(*result);
-      tell(Severity::error, "type", e.location, std::move(result.error()));
-      return 0.0;
-    }
+    case ExpressionKind::unary:
     case ExpressionKind::binary:
-      return evaluate_binary(e, place);
+      return scalar_of_operator(e, place).value();
     case ExpressionKind::index:
       return evaluate_index(e, place);
     case ExpressionKind::array:
@@ -70,18 +65,82 @@ Value Run::evaluate(NodeId id, Place& place) {
   return 0.0;
 }
 
-Value Run::evaluate_binary(const Expression& e, Place& place) {
+Scalar Scalar::of(Value&& value) {
+  if (const auto* number = std::get_if<double>(&value)) return of(*number);
+  if (const auto* truth = std::get_if<bool>(&value)) return of(*truth);
+  Scalar out;
+  out.type = type_of(value);
+  out.other.emplace(std::move(value));
+  return out;
+}
+
+Value Scalar::value() && {
+  if (type == Type::number) return number;
+  if (type == Type::truth) return truth;
+  return std::move(*other);
+}
+
+Scalar Run::scalar(NodeId id, Place& place) {
+  const Expression& e = program_.unit(place.module).expressions[id];
+  switch (e.kind) {
+    case ExpressionKind::number:
+      return Scalar::of(e.number);
+    case ExpressionKind::truth:
+      return Scalar::of(e.number != 0);
+    case ExpressionKind::name: {
+      if (const Value* known = known_value(e, place)) {
+        if (const auto* number = std::get_if<double>(known)) return Scalar::of(*number);
+        if (const auto* truth = std::get_if<bool>(known)) return Scalar::of(*truth);
+        return Scalar::of(Value(*known));
+      }
+      if (e.use != kNone)
+        if (const Target& found = target(place.module, e.use); found.kind == TargetKind::own_function)
+          return call_own(e, found, place);
+      return Scalar::of(evaluate_name(e, place));
+    }
+    case ExpressionKind::unary:
+    case ExpressionKind::binary:
+      return scalar_of_operator(e, place);
+    case ExpressionKind::cases:
+      for (const Branch& branch : Unit::slice(program_.unit(place.module).branches, e.branches))
+        if (branch.condition == kNone || condition(branch.condition, place)) return scalar(branch.result, place);
+      return Scalar::of(0.0);
+    case ExpressionKind::text:
+    case ExpressionKind::index:
+    case ExpressionKind::array:
+    case ExpressionKind::range:
+    case ExpressionKind::chances:
+    case ExpressionKind::component_map:
+      break;
+  }
+  return Scalar::of(evaluate(id, place));
+}
+
+Scalar Run::scalar_of_operator(const Expression& e, Place& place) {
   if (e.op == Operator::logical_and || e.op == Operator::logical_or) {
     const bool left = condition(e.first, place);
-    if (left == (e.op == Operator::logical_or)) return left;
-    return condition(e.second, place);
+    if (left == (e.op == Operator::logical_or)) return Scalar::of(left);
+    return Scalar::of(condition(e.second, place));
   }
-  const Value left = evaluate(e.first, place);
-  const Value right = evaluate(e.second, place);
-  auto result = apply_binary(e.op, left, right);
-  if (result) return std::move(*result);
+  Scalar left = scalar(e.first, place);
+  if (e.kind == ExpressionKind::unary) {
+    if (left.type == Type::truth && e.op == Operator::logical_not) return Scalar::of(!left.truth);
+    if (left.type == Type::number && e.op != Operator::logical_not)
+      return Scalar::of((e.op == Operator::negate ? -1 : 1) * left.number);
+    auto result = apply_unary(e.op, std::move(left).value());
+    if (result) return Scalar::of(std::move(*result));
+    tell(Severity::error, "type", e.location, std::move(result.error()));
+    return Scalar::of(0.0);
+  }
+  Scalar right = scalar(e.second, place);
+  if (left.type == Type::number && right.type == Type::number) {
+    if (is_arithmetic(e.op)) return Scalar::of(calculate(e.op, left.number, right.number));
+    if (is_comparison(e.op)) return Scalar::of(compare(e.op, left.number, right.number));
+  }
+  auto result = apply_binary(e.op, std::move(left).value(), std::move(right).value());
+  if (result) return Scalar::of(std::move(*result));
   tell(Severity::error, "type", e.location, std::move(result.error()));
-  return 0.0;
+  return Scalar::of(0.0);
 }
 
 Value Run::evaluate_index_part(NodeId id, Place& place) {
@@ -97,8 +156,17 @@ Value Run::evaluate_index_part(NodeId id, Place& place) {
 }
 
 Value Run::evaluate_index(const Expression& e, Place& place) {
-  const Value array = evaluate(e.first, place);
   const auto list = Unit::slice(program_.unit(place.module).expression_lists, e.list);
+  // Arrays are not copied for one of their elements.
+  const Expression& named = program_.unit(place.module).expressions[e.first];
+  if (list.size() == 1 && known_value(named, place)) {
+    const Value index = evaluate_index_part(list[0], place);
+    auto result = index_value(*known_value(named, place), index);
+    if (result) return std::move(*result);
+    tell(Severity::error, "type", e.location, std::move(result.error()));
+    return 0.0;
+  }
+  const Value array = evaluate(e.first, place);
   if (list.empty()) return array;
   const Value first = evaluate_index_part(list[0], place);
   auto result =
@@ -158,20 +226,19 @@ Value Run::evaluate_chances(const Expression& e, Place& place) {
 double Run::number(NodeId id, Place& place) {
   const Expression& e = program_.unit(place.module).expressions[id];
   if (e.kind == ExpressionKind::number) return e.number;
-  const Value value = evaluate(id, place);
-  if (const auto* found = std::get_if<double>(&value)) return *found;
+  const Scalar found = scalar(id, place);
+  if (found.type == Type::number) return found.number;
   tell(Severity::error, "type", e.location,
-       "a number is needed here, not a " + std::string(type_name(type_of(value))) + "; 0 is taken");
+       "a number is needed here, not a " + std::string(type_name(found.type)) + "; 0 is taken");
   return 0;
 }
 
 bool Run::condition(NodeId id, Place& place) {
-  const Value value = evaluate(id, place);
-  if (const auto* found = std::get_if<bool>(&value)) return *found;
+  const Scalar found = scalar(id, place);
+  if (found.type == Type::truth) return found.truth;
   tell(Severity::error, "type", program_.unit(place.module).expressions[id].location,
-       "a truth value is needed here, not a " + std::string(type_name(type_of(value))));
-  const auto* as_number = std::get_if<double>(&value);
-  return as_number != nullptr && *as_number != 0;
+       "a truth value is needed here, not a " + std::string(type_name(found.type)));
+  return found.type == Type::number && found.number != 0;
 }
 
 std::string Run::text(NodeId id, Place& place) {
@@ -207,6 +274,21 @@ void Run::push_bindings(const Declaration& declaration, Place& place) {
   }
 }
 
+const Value* Run::known_value(const Expression& e, const Place& place) const {
+  if (e.kind != ExpressionKind::name || e.use == kNone) return nullptr;
+  const Target& found = target(place.module, e.use);
+  if (found.kind == TargetKind::local) return &locals_[place.frame + found.index];
+  if (found.kind == TargetKind::attribute) {
+    if (phase_ == nullptr) return &(*place.shape->attributes)[found.index];
+    return phase_->state[found.index] == 2 ? &phase_->values[found.index] : nullptr;
+  }
+  if (found.kind == TargetKind::unknown) {
+    const auto known = source_values_.find(std::string_view(program_.unit(place.module).name(e.name)));
+    if (known != source_values_.end() && known->second) return &*known->second;
+  }
+  return nullptr;
+}
+
 Value Run::evaluate_name(const Expression& e, Place& place) {
   if (e.use == kNone) return 0.0;
   const Target& found = target(place.module, e.use);
@@ -220,7 +302,7 @@ Value Run::evaluate_name(const Expression& e, Place& place) {
     case TargetKind::function:
       return call_function(e, found, place);
     case TargetKind::own_function:
-      return call_own(e, found, place);
+      return call_own(e, found, place).value();
     case TargetKind::word: {
       const std::string& name = program_.unit(place.module).name(e.name);
       if (place.component != nullptr && without_selector(name)) return false;
@@ -354,15 +436,15 @@ void Run::tell_too_many_calls(const Location& location, const std::string& name)
        name);
 }
 
-Value Run::call_own(const Expression& e, const Target& found, Place& place) {
-  if (too_deep(e.location)) return 0.0;
+Scalar Run::call_own(const Expression& e, const Target& found, Place& place) {
+  if (too_deep(e.location)) return Scalar::of(0.0);
   if (++calls_ > options_.limits.calls) {
     tell_too_many_calls(e.location, program_.unit(place.module).name(e.name));
-    return 0.0;
+    return Scalar::of(0.0);
   }
   const std::size_t first = push_arguments(e.arguments, place);
   const std::uint32_t chosen = choose(program_, found, std::span<const Value>(locals_).subspan(first));
-  Value out = 0.0;
+  Scalar out;
   if (chosen == kNone) {
     tell(Severity::error, "type", e.location, "no function of this name takes these arguments; 0 is taken",
          program_.unit(place.module).name(e.name));
@@ -376,7 +458,7 @@ Value Run::call_own(const Expression& e, const Target& found, Place& place) {
                 .lineage = place.lineage};
     ++function_depth_;
     push_bindings(declaration, inner);
-    if (declaration.value != kNone) out = evaluate(declaration.value, inner);
+    if (declaration.value != kNone) out = scalar(declaration.value, inner);
     --function_depth_;
   }
   locals_.resize(first);

@@ -14,24 +14,6 @@ ValueResult wrong(const char* sign, const Value& left, const Value& right) {
                  std::string(type_name(type_of(right))));
 }
 
-template <typename T>
-bool compare(Operator op, const T& a, const T& b) {
-  if (op == Operator::equal) return a == b;
-  if (op == Operator::not_equal) return !(a == b);
-  if (op == Operator::less) return a < b;
-  if (op == Operator::less_equal) return a <= b;
-  if (op == Operator::greater) return a > b;
-  return op == Operator::greater_equal && a >= b;
-}
-
-double calculate(Operator op, double a, double b) {
-  if (op == Operator::add) return a + b;
-  if (op == Operator::subtract) return a - b;
-  if (op == Operator::multiply) return a * b;
-  if (op == Operator::divide) return a / b;
-  return std::fmod(a, b);
-}
-
 const char* sign_of(Operator op) {
   static constexpr const char* kSigns[] = {"?",  "-",  "+",   "!",   "+",  "-",   "*",  "/",   "%",   "==",
                                            "!=", "<",  "<=",  ">",   ">=", "&&",  "||", ".+",  ".-",  ".*",

@@ -27,6 +27,19 @@ struct RuleContext {
   std::uint32_t first_line = 0;      ///< of the rule: keys of choices count from it
 };
 
+/// A value that is a number or a truth value mostly: these are kept apart, since a Value costs more to hand on.
+struct Scalar {
+  Type type = Type::number;
+  bool truth = false;
+  double number = 0;
+  std::optional<Value> other;  ///< of the other types
+
+  static Scalar of(double value) { return {.type = Type::number, .number = value, .other = {}}; }
+  static Scalar of(bool value) { return {.type = Type::truth, .truth = value, .other = {}}; }
+  static Scalar of(Value&& value);
+  Value value() &&;
+};
+
 /// A component that a selector expression is tried on.
 struct ComponentTest {
   const ComponentSplit* split = nullptr;
@@ -64,6 +77,9 @@ struct Work {
   bool produced = false;          ///< a child was made, or pieces were
   std::uint32_t lineage = kNone;  ///< in Run::lineages_
 };
+
+/// Which of these gives the slot's value; kNone: none.
+std::uint32_t find_outside(const Slot& slot, const std::vector<std::pair<std::string, Value>>& attributes);
 
 class Run;
 /// A function that needs the shape or the tree. Arguments are evaluated by it.
@@ -135,8 +151,12 @@ class Run {
  private:
   // Expressions (evaluate.cpp).
   Value evaluate(NodeId id, Place& place);
+  /// What evaluate() gives.
+  Scalar scalar(NodeId id, Place& place);
+  Scalar scalar_of_operator(const Expression& e, Place& place);
+  /// A value that is there already and can be read where it is, as long as no other expression is evaluated; null: none.
+  const Value* known_value(const Expression& e, const Place& place) const;
   Value evaluate_name(const Expression& e, Place& place);
-  Value evaluate_binary(const Expression& e, Place& place);
   Value evaluate_index(const Expression& e, Place& place);
   Value evaluate_index_part(NodeId id, Place& place);
   Value evaluate_array(const Expression& e, Place& place);
@@ -144,7 +164,7 @@ class Run {
   Value evaluate_chances(const Expression& e, Place& place);
   Value evaluate_component_map(const Expression& e, Place& place);
   Value call_function(const Expression& e, const Target& target, Place& place);
-  Value call_own(const Expression& e, const Target& target, Place& place);
+  Scalar call_own(const Expression& e, const Target& target, Place& place);
   Value read_shape_attribute(const Expression& e, std::uint32_t number, Place& place);
   Value read_attribute_slot(std::uint32_t slot, Place& place);
   Value read_source(const Expression& e, std::string_view name);
@@ -180,17 +200,17 @@ class Run {
   // Attributes (derive_attributes.cpp).
   void evaluate_attributes();
   void evaluate_slot(std::uint32_t slot);
-  Value outside_value(const Slot& slot, bool& found);
+  Value outside_value(std::uint32_t slot, bool& found);
   void enter_dynamic(std::uint32_t module, Shape& shape, Place& importer);
   void set_slot(Shape& shape, std::uint32_t slot, Value value);
 
   // Rules (derive.cpp, derive_steps.cpp, derive_blocks.cpp).
-  void apply(Node node);
+  void apply(Node& node);
   /// \param last  nothing follows that needs work.shape: a symbol may take it
   void execute(NodeId successor, Work& work, Place& place, bool last);
   void execute_call(const Call& call, Work& work, Place& place, bool last);
   void execute_symbol(const Call& call, const Target& target, Work& work, Place& place, bool last);
-  void execute_request(const Call& call, Work& work, Place& place);
+  void execute_request(const Call& call, Work& work, Place& place, bool last);
   void execute_operation(const Call& call, std::uint32_t number, Work& work, Place& place);
   void run_item(NodeId successor, Shape piece, Work& parent, Place& place);
   void leave_leaf(std::string symbol, Shape shape, const Location& location, std::uint32_t node, std::uint32_t lineage,
@@ -250,7 +270,7 @@ class Run {
   struct AttributePhase {
     std::vector<Value> values;
     std::vector<std::uint8_t> state;  ///< 0 waiting, 1 under way, 2 done
-    Shape* shape = nullptr;           ///< what defaults are evaluated on
+    Shape shape;                      ///< what defaults are evaluated on; seed and draws are those of the slot at work
     Place* importer = nullptr;        ///< dynamic imports: where the call stands
     bool outside = true;
   };

@@ -364,12 +364,22 @@ const Mesh& mesh_of(const Shape& shape) {
   return shape.mesh ? *shape.mesh : kEmpty;
 }
 
-void take_mesh(Shape& shape, Mesh mesh) {
-  const Box box = box_of(mesh);
-  if (box.empty) {
-    shape.mesh = nullptr;
-    return;
-  }
+const Mesh& MeshPointer::made() const {
+  auto mesh = std::make_shared<Mesh>();
+  MeshFace& face = mesh->faces.emplace_back();
+  face.material = face_.material;
+  Loop& loop = face.loops.emplace_back();
+  loop.reserve(face_.size);
+  mesh->vertices.assign(face_.points.begin(), face_.points.begin() + face_.size);
+  for (std::uint32_t i = 0; i < face_.size; ++i) loop.push_back({i, 0});
+  mesh_ = std::move(mesh);
+  return *mesh_;
+}
+
+namespace {
+
+/// Moves scope and points to the points' box.
+void fit_scope(Shape& shape, const Box& box, std::span<Vector3> points) {
   Vector3 corner = box.low, size = box.high - box.low;
   for (int i = 0; i < 3; ++i)
     if (component(shape.size, i) < 0) {
@@ -377,10 +387,27 @@ void take_mesh(Shape& shape, Mesh mesh) {
       set_component(size, i, -component(size, i));
     }
   if (corner != Vector3{})
-    for (Vector3& p : mesh.vertices) p = p - corner;
+    for (Vector3& p : points) p = p - corner;
   shape.scope.origin = shape.scope.origin + turn(shape.scope, corner);
   shape.size = size;
+}
+
+}  // namespace
+
+void take_mesh(Shape& shape, Mesh mesh) {
+  const Box box = box_of(mesh);
+  if (box.empty) {
+    shape.mesh = nullptr;
+    return;
+  }
+  fit_scope(shape, box, mesh.vertices);
   shape.mesh = std::make_shared<const Mesh>(std::move(mesh));
+}
+
+void take_face(Shape& shape, SmallFace face) {
+  const std::span<Vector3> points = std::span(face.points).first(face.size);
+  fit_scope(shape, box_of(points), points);
+  shape.mesh = face;
 }
 
 void take_mesh_in_frame(Shape& shape, Mesh mesh, const Frame& inner) {

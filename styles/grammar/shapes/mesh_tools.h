@@ -90,6 +90,8 @@ void into_frame(Mesh& mesh, const Frame& inner);
 /// The shape gets this geometry, given in the shape's scope; the scope moves and resizes to the geometry's box. Sizes
 /// that were negative stay so. An empty mesh leaves the scope as it is.
 void take_mesh(Shape& shape, Mesh mesh);
+/// The same of a small face.
+void take_face(Shape& shape, SmallFace face);
 /// As take_mesh, for a scope that is turned to `inner` (given in the present scope) first.
 void take_mesh_in_frame(Shape& shape, Mesh mesh, const Frame& inner);
 /// The shape gets this geometry; the scope stays.

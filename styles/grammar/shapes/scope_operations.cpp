@@ -92,9 +92,14 @@ Result run_s(Shape& shape, const OperationInput& input, Arguments arguments) {
   const Vector3 size = sized(arguments, 0, input.base.size);
   const auto factor = [](double from, double to) { return from == 0 ? 1.0 : to / from; };
   const Vector3 k{factor(shape.size.x, size.x), factor(shape.size.y, size.y), factor(shape.size.z, size.z)};
-  if (shape.mesh && k != Vector3{1, 1, 1}) {
+  const auto scaled = [&](Vector3 p) { return Vector3{p.x * k.x, p.y * k.y, p.z * k.z}; };
+  if (const SmallFace* small = shape.mesh.small(); small && k != Vector3{1, 1, 1}) {
+    SmallFace face = *small;
+    for (std::size_t i = 0; i < face.size; ++i) face.points[i] = scaled(face.points[i]);
+    shape.mesh = face;
+  } else if (shape.mesh && k != Vector3{1, 1, 1}) {
     Mesh mesh = *shape.mesh;
-    for (Vector3& p : mesh.vertices) p = {p.x * k.x, p.y * k.y, p.z * k.z};
+    for (Vector3& p : mesh.vertices) p = scaled(p);
     shape.mesh = std::make_shared<const Mesh>(std::move(mesh));
   }
   shape.size = size;

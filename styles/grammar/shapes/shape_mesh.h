@@ -2,9 +2,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace blockrand::grammar {
@@ -50,7 +52,42 @@ struct Mesh {
   bool empty() const { return faces.empty(); }
 };
 
-/// Shared between shapes and never changed once shared: operations make a new one.
-using MeshPointer = std::shared_ptr<const Mesh>;
+/// A mesh of one polygon of few corners without holes, tags, uv and asset, its first corner at the first edge: what most
+/// pieces of facades are.
+struct SmallFace {
+  static constexpr std::size_t kMostCorners = 4;
+  std::array<Vector3, kMostCorners> points;
+  std::uint8_t size = 0;  ///< corners; 0: no polygon
+  std::uint16_t material = 0;
+  bool operator==(const SmallFace&) const = default;
+};
+
+/// Shared between shapes and never changed once shared: operations make a new one. A small face lies in the pointer
+/// itself and becomes a mesh once somebody looks at it, which is why one pointer is not for several threads.
+class MeshPointer {
+ public:
+  MeshPointer() = default;
+  MeshPointer(std::nullptr_t) {}
+  MeshPointer(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {}
+  MeshPointer(std::shared_ptr<Mesh> mesh) : mesh_(std::move(mesh)) {}
+  /// \param face  three corners at least
+  MeshPointer(const SmallFace& face) : face_(face) {}
+
+  explicit operator bool() const { return face_.size > 0 || mesh_ != nullptr; }
+  const Mesh& operator*() const { return mesh_ ? *mesh_ : made(); }
+  const Mesh* operator->() const { return &**this; }
+  /// Null where it is not one, or is not known to be one.
+  const SmallFace* small() const { return face_.size > 0 ? &face_ : nullptr; }
+  friend bool operator==(const MeshPointer& a, const MeshPointer& b) {
+    return a.face_.size > 0 || b.face_.size > 0 ? a.face_ == b.face_ : a.mesh_ == b.mesh_;
+  }
+  friend bool operator==(const MeshPointer& a, std::nullptr_t) { return !a; }
+
+ private:
+  const Mesh& made() const;
+
+  mutable std::shared_ptr<const Mesh> mesh_;
+  SmallFace face_;
+};
 
 }  // namespace blockrand::grammar

@@ -67,16 +67,21 @@ bool is_small(const Mesh& mesh) {
   return true;
 }
 
-Mesh mesh_of_small(const SmallLoop& loop, const Mesh& parent) {
-  Mesh out;
-  if (loop.size < 3) return out;
-  if (parent.tag_sets.size() > 1) out.tag_sets = parent.tag_sets;
+/// The corner that the face begins with.
+std::size_t first_corner(const SmallLoop& loop) {
   std::size_t first = 0;
   for (std::size_t i = 1; i < loop.size; ++i)
     if (loop.edges[i] >= 0 && (loop.edges[first] < 0 || loop.edges[i] < loop.edges[first])) first = i;
   // As Cutter::emit: the cut stands for a first edge that it took away.
   const std::size_t before = (first + loop.size - 1) % loop.size;
-  if (loop.edges[first] > 0 && loop.edges[before] < 0) first = before;
+  return loop.edges[first] > 0 && loop.edges[before] < 0 ? before : first;
+}
+
+Mesh mesh_of_small(const SmallLoop& loop, const Mesh& parent) {
+  Mesh out;
+  if (loop.size < 3) return out;
+  if (parent.tag_sets.size() > 1) out.tag_sets = parent.tag_sets;
+  const std::size_t first = first_corner(loop);
   out.vertices.reserve(loop.size);
   out.faces.resize(1);
   MeshFace& face = out.faces[0];
@@ -98,21 +103,56 @@ Vector3 unit(int axis, double sign) {
   return out;
 }
 
-/// The slab as scope; the mesh is given in the parent's scope.
-void take_slab(Shape& piece, Mesh mesh, int axis, double from, double to, double sign) {
+/// The slab as scope; points are given in the parent's scope.
+void take_slab(Shape& piece, std::span<Vector3> points, int axis, const SplitPiece& range, double sign) {
   Vector3 shift;
-  set_component(shift, axis, from * sign);
-  for (Vector3& p : mesh.vertices) p = p - shift;
+  set_component(shift, axis, range.from * sign);
+  for (Vector3& p : points) p = p - shift;
   piece.scope.origin = piece.scope.origin + turn(piece.scope, shift);
-  set_component(piece.size, axis, (to - from) * sign);
-  keep_scope(piece, std::move(mesh));
+  set_component(piece.size, axis, (range.to - range.from) * sign);
 }
 
 void finish(Shape& piece, Mesh mesh, int axis, const SplitPiece& range, double sign, bool adjust) {
-  if (adjust && !mesh.faces.empty())
-    take_mesh(piece, std::move(mesh));
-  else
-    take_slab(piece, std::move(mesh), axis, range.from, range.to, sign);
+  if (adjust && !mesh.faces.empty()) return take_mesh(piece, std::move(mesh));
+  take_slab(piece, mesh.vertices, axis, range, sign);
+  keep_scope(piece, std::move(mesh));
+}
+
+/// The same of a loop without tags and of few corners.
+void finish_small(Shape& piece, const SmallLoop& loop, std::uint16_t material, int axis, const SplitPiece& range,
+                  double sign, bool adjust) {
+  SmallFace face;
+  if (loop.size >= 3) {
+    face.size = static_cast<std::uint8_t>(loop.size);
+    face.material = material;
+    const std::size_t first = first_corner(loop);
+    for (std::size_t k = 0; k < loop.size; ++k)
+      face.points[k] = loop.points[first + k >= loop.size ? first + k - loop.size : first + k];
+    if (adjust) return take_face(piece, face);
+  }
+  take_slab(piece, std::span(face.points).first(face.size), axis, range, sign);
+  if (face.size > 0) piece.mesh = face;
+}
+
+/// The shape's mesh where it is a small one.
+bool read_small(const Shape& shape, SmallLoop& loop, std::uint16_t& material, bool& tagged) {
+  const auto add = [&](Vector3 p, std::uint16_t tags) {
+    loop.edges[loop.size] = static_cast<std::int32_t>(loop.size);
+    loop.tags[loop.size] = tags;
+    loop.points[loop.size++] = p;
+  };
+  if (const SmallFace* face = shape.mesh.small()) {
+    for (std::size_t i = 0; i < face->size; ++i) add(face->points[i], 0);
+    material = face->material;
+    tagged = false;
+    return true;
+  }
+  const Mesh& mesh = mesh_of(shape);
+  if (!is_small(mesh)) return false;
+  for (const Corner c : mesh.faces[0].loops[0]) add(mesh.vertices[c.vertex], c.edge_tags);
+  material = mesh.faces[0].material;
+  tagged = mesh.tag_sets.size() > 1;
+  return true;
 }
 
 }  // namespace
@@ -130,24 +170,25 @@ std::vector<Shape> split_shape(const Shape& shape, int axis, std::span<const Spl
     piece.split = {static_cast<std::int32_t>(out.size() - 1), static_cast<std::int32_t>(pieces.size())};
     return piece;
   };
-  const Mesh& mesh = mesh_of(shape);
-  if (is_small(mesh)) {
-    SmallLoop loop, upper, both;
-    for (const Corner c : mesh.faces[0].loops[0]) {
-      loop.edges[loop.size] = static_cast<std::int32_t>(loop.size);
-      loop.tags[loop.size] = c.edge_tags;
-      loop.points[loop.size++] = mesh.vertices[c.vertex];
-    }
+  SmallLoop loop;
+  std::uint16_t material = 0;
+  bool tagged = false;
+  if (read_small(shape, loop, material, tagged)) {
+    SmallLoop upper, both;
     for (const SplitPiece& piece : pieces) {
       if (!cut_small(loop, axis, piece.from * sign, sign, upper) ||
           !cut_small(upper, axis, piece.to * sign, -sign, both)) {
         out.clear();
         break;
       }
-      finish(add(), mesh_of_small(both, mesh), axis, piece, sign, adjust);
+      if (!tagged && both.size <= SmallFace::kMostCorners)
+        finish_small(add(), both, material, axis, piece, sign, adjust);
+      else
+        finish(add(), mesh_of_small(both, *shape.mesh), axis, piece, sign, adjust);
     }
     if (!out.empty()) return out;
   }
+  const Mesh& mesh = mesh_of(shape);
   const bool cap = is_closed(mesh);
   Mesh rest = mesh;
   double rest_from = -1e300;
