@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 namespace blockrand::base {
 
@@ -29,5 +30,9 @@ void share(std::size_t count, const std::function<void(std::size_t)>& work);
 /// How many threads could work on what is shared now, at least 1: for dividing work. It says nothing of a moment later, so that no
 /// result may depend on it.
 std::size_t sharing_threads();
+
+/// [0, count) cut into stretches for share(), in order, none empty: one where no other thread is free.
+/// \return  where each begins, and `count`
+std::vector<std::size_t> stretches_to_share(std::size_t count);
 
 }  // namespace blockrand::base

@@ -177,12 +177,29 @@ std::uint32_t ElementLibrary::take(std::string& error) {
   // A part that the form lacks has no look: windows without trim are the same on walls of all colours.
   for (std::size_t p = 0; p < materials_of_parts_.size(); ++p)
     if (!made->second.parts[p]) materials_of_parts_[p] = {};
-  for (const auto& [known, number] : made->second.coloured)
-    if (known == materials_of_parts_) return number;
+  return number_of(*made, materials_of_parts_);
+}
+
+std::uint32_t ElementLibrary::number_of(Entry& entry, const PartMaterials& materials) {
+  for (const auto& [known, number] : entry.second.coloured)
+    if (known == materials) return number;
   const auto number = static_cast<std::uint32_t>(region_.elements.size());
-  made->second.coloured.emplace_back(materials_of_parts_, number);
-  region_.elements.push_back({made->second.element, materials_of_parts_});
+  entry.second.coloured.emplace_back(materials, number);
+  region_.elements.push_back({entry.second.element, materials});
+  of_number_.push_back(&entry);
   return number;
+}
+
+std::vector<std::uint32_t> ElementLibrary::take_over(ElementLibrary& other) {
+  std::vector<std::uint32_t> numbers;
+  for (std::size_t i = 0; i < other.of_number_.size(); ++i) {
+    const Entry& theirs = *other.of_number_[i];
+    auto [ours, is_new] = made_.try_emplace(theirs.first, theirs.second);
+    if (is_new) ours->second.coloured.clear();
+    numbers.push_back(number_of(*ours, other.region_.elements[i].materials));
+  }
+  other.made_.clear(), other.of_number_.clear(), other.region_.elements.clear();
+  return numbers;
 }
 
 }  // namespace blockrand::facades

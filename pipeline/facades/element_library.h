@@ -48,6 +48,10 @@ class ElementLibrary {
   /// a simpler one was made, `error` says so.
   std::uint32_t take(std::string& error);
 
+  /// All elements of another library, in their order, as if they had been asked for here. \param other  has nothing left
+  /// \return  number here by number there
+  std::vector<std::uint32_t> take_over(ElementLibrary& other);
+
   const model::Element& element(std::uint32_t number) const { return *region_.elements[number].element; }
 
  private:
@@ -57,6 +61,8 @@ class ElementLibrary {
     std::array<bool, model::kElementPartCount> parts{};  ///< has faces of it
     std::vector<std::pair<PartMaterials, std::uint32_t>> coloured;
   };
+  using Entry = std::pair<const std::string, Made>;  ///< by its key
+  std::uint32_t number_of(Entry& entry, const PartMaterials& materials);
   void add_key(char type, std::string_view text);
   void add_key(double value, double steps);
 
@@ -68,6 +74,7 @@ class ElementLibrary {
   PartMaterials materials_of_parts_;
   std::vector<elements::Parameter> parameters_;
   std::unordered_map<std::string, Made> made_;
+  std::vector<Entry*> of_number_;  ///< parallel to Region::elements
 };
 
 }  // namespace blockrand::facades

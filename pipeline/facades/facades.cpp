@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/base/parallel.h"
 #include "pipeline/base/random.h"
 #include "pipeline/facades/element_library.h"
 #include "pipeline/facades/facade_context.h"
@@ -48,9 +49,9 @@ struct Asked {
 
 class FacadeBuilder {
  public:
-  FacadeBuilder(model::Region& region, const GrammarLibrary& grammars, const attributes::Defaults& defaults,
+  FacadeBuilder(model::Report& report, ElementLibrary& library, const GrammarLibrary& grammars,
                 const FacadeOptions& options)
-      : region_(region), grammars_(grammars), options_(options), library_(region, defaults) {}
+      : report_(report), library_(library), grammars_(grammars), options_(options) {}
 
   void build(model::Building& building, BuildingPart& part) {
     if (part.lod < 2 || part.lod2.empty() || part.canopy) return;
@@ -360,7 +361,7 @@ class FacadeBuilder {
       detail.openings = std::move(made->opened.openings);
     } else {
       part.fallbacks.push_back(IssueCode::facade_failed);
-      region_.report.add(part.osm, IssueCode::facade_failed, part.id);
+      report_.add(part.osm, IssueCode::facade_failed, part.id);
       for (std::size_t i = 0; i < asked_.size(); ++i)
         refused[i] = !library_.element(asked_[i].element).opening.outline.empty();
       detail.solid = part.lod2;
@@ -387,16 +388,16 @@ class FacadeBuilder {
       part.fallbacks.push_back(IssueCode::opening_left_out);
       std::string what = fmt::format("{}: {} of {}", part.id, left_out, asked_.size() + missed_doors_);
       if (yielding_ > 0) what += fmt::format(", {} yield to a passage", yielding_);
-      region_.report.add(part.osm, IssueCode::opening_left_out, std::move(what));
+      report_.add(part.osm, IssueCode::opening_left_out, std::move(what));
     }
     for (const PassagePortal& m : portals_) {
       if (m.state == PortalState::open) continue;
       if (part.fallbacks.empty() || part.fallbacks.back() != IssueCode::opening_left_out)
         part.fallbacks.push_back(IssueCode::opening_left_out);
-      region_.report.add(part.osm, IssueCode::opening_left_out,
-                         fmt::format("{}: a passage in a {} front: {}", part.id, model::name(m.front), name(m.state)));
+      report_.add(part.osm, IssueCode::opening_left_out,
+                  fmt::format("{}: a passage in a {} front: {}", part.id, model::name(m.front), name(m.state)));
     }
-    for (const std::string& what : told_) region_.report.add(part.osm, IssueCode::grammar_error, part.id + ": " + what);
+    for (const std::string& what : told_) report_.add(part.osm, IssueCode::grammar_error, part.id + ": " + what);
   }
 
   /// Each complaint once a part.
@@ -406,10 +407,10 @@ class FacadeBuilder {
   /// m; narrower portals get a house door.
   static constexpr double kLeastGate = 1.8;
 
-  model::Region& region_;
+  model::Report& report_;
+  ElementLibrary& library_;
   const GrammarLibrary& grammars_;
   const FacadeOptions& options_;
-  ElementLibrary library_;
   CornerRounding rounding_ = CornerRounding::nearest;  ///< of the part at work
   grammar::DeriveOptions derive_options_;
   const GrammarLibrary::Entry* derived_for_ = nullptr;  ///< whose values derive_options_ holds, with these parameters
@@ -430,12 +431,33 @@ class FacadeBuilder {
 
 void build_facades(model::Region& region, const GrammarLibrary& grammars, const attributes::Defaults& defaults,
                    const FacadeOptions& options) {
-  FacadeBuilder builder(region, grammars, defaults, options);
-  for (model::Building& building : region.buildings) {
-    if (!building.owned) continue;
-    for (const std::string& order : unread_overrides(building))
-      region.report.add(building.osm, IssueCode::override_unmatched, order);
-    for (BuildingPart& part : building.parts) builder.build(building, part);
+  // Buildings of a stretch are built by themselves; their elements become those of the region in the order of the stretches, as if there
+  // had been one.
+  struct Stretch {
+    model::Region made;  ///< report and elements
+    std::unique_ptr<ElementLibrary> library;
+  };
+  const std::vector<std::size_t> begins = base::stretches_to_share(region.buildings.size());
+  std::vector<Stretch> stretches(begins.size() - 1);
+  base::share(stretches.size(), [&](std::size_t i) {
+    Stretch& stretch = stretches[i];
+    stretch.library = std::make_unique<ElementLibrary>(stretch.made, defaults);
+    FacadeBuilder builder(stretch.made.report, *stretch.library, grammars, options);
+    for (std::size_t b = begins[i]; b < begins[i + 1]; ++b) {
+      model::Building& building = region.buildings[b];
+      if (!building.owned) continue;
+      for (const std::string& order : unread_overrides(building))
+        stretch.made.report.add(building.osm, IssueCode::override_unmatched, order);
+      for (BuildingPart& part : building.parts) builder.build(building, part);
+    }
+  });
+  ElementLibrary library(region, defaults);
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    region.report.append(std::move(stretches[i].made.report));
+    const std::vector<std::uint32_t> numbers = library.take_over(*stretches[i].library);
+    for (std::size_t b = begins[i]; b < begins[i + 1]; ++b)
+      for (BuildingPart& part : region.buildings[b].parts)
+        for (model::Placement& placement : part.lod3.placements) placement.element = numbers[placement.element];
   }
 }
 

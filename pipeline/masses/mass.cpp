@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -12,6 +13,7 @@
 
 #include "pipeline/attributes/resolve.h"
 #include "pipeline/attributes/roof_edges.h"
+#include "pipeline/base/parallel.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/triangulate.h"
@@ -70,8 +72,9 @@ roofs::RoofRequest request_of(const model::Attributes& attributes, RoofShape sha
 
 class MassBuilder {
  public:
-  MassBuilder(Region& region, const attributes::Defaults& defaults, const attributes::GenerateOptions& options)
-      : region_(region), defaults_(defaults), options_(options) {}
+  MassBuilder(Region& region, model::Report& report, const attributes::Defaults& defaults,
+              const attributes::GenerateOptions& options)
+      : region_(region), report_(report), defaults_(defaults), options_(options) {}
 
   void build(std::uint32_t building, int lod) {
     building_ = &region_.buildings[building];
@@ -87,8 +90,8 @@ class MassBuilder {
     if (levels.size() > 1)
       for (const GivenWay& g : settle_stacks(plans, levels)) {
         const BuildingPart &part = building_->parts[g.part], &other = building_->parts[g.other];
-        region_.report.add(part.osm, IssueCode::parts_overlap,
-                           fmt::format("{}: {:.2f} m of its height given to {}", part.id, g.metres, other.id));
+        report_.add(part.osm, IssueCode::parts_overlap,
+                    fmt::format("{}: {:.2f} m of its height given to {}", part.id, g.metres, other.id));
       }
     for (std::uint32_t p = 0; p < levels.size(); ++p) {
       body_ = {building, p};
@@ -97,7 +100,7 @@ class MassBuilder {
   }
 
   /// What was built; the builder has nothing left.
-  BuiltMasses take() { return BuiltMasses(std::move(built_)); }
+  std::vector<BuiltMasses::Entry> take() { return std::move(built_); }
 
  private:
   void build(BuildingPart& part, const Levels& levels, int lod) {
@@ -110,7 +113,7 @@ class MassBuilder {
 
   void note(BuildingPart& part, IssueCode code, std::string detail = {}) {
     part.fallbacks.push_back(code);
-    region_.report.add(part.osm, code, detail.empty() ? part.id : part.id + ": " + detail);
+    report_.add(part.osm, code, detail.empty() ? part.id : part.id + ": " + detail);
   }
 
   EnvelopeMaterials materials_of(const BuildingPart& part) const {
@@ -300,6 +303,7 @@ class MassBuilder {
   }
 
   Region& region_;
+  model::Report& report_;
   const attributes::Defaults& defaults_;
   const attributes::GenerateOptions& options_;
   model::Building* building_ = nullptr;
@@ -311,12 +315,24 @@ class MassBuilder {
 
 BuiltMasses build_masses(Region& region, const attributes::Defaults& defaults,
                          const attributes::GenerateOptions& options, int lod) {
-  MassBuilder builder(region, defaults, options);
-  for (std::uint32_t b = 0; b < region.buildings.size(); ++b) {
-    if (!region.buildings[b].owned) continue;
-    builder.build(b, lod);
+  struct Stretch {
+    model::Report report;
+    std::vector<BuiltMasses::Entry> built;
+  };
+  const std::vector<std::size_t> begins = base::stretches_to_share(region.buildings.size());
+  std::vector<Stretch> made(begins.size() - 1);
+  base::share(made.size(), [&](std::size_t i) {
+    MassBuilder builder(region, made[i].report, defaults, options);
+    for (std::size_t b = begins[i]; b < begins[i + 1]; ++b)
+      if (region.buildings[b].owned) builder.build(static_cast<std::uint32_t>(b), lod);
+    made[i].built = builder.take();
+  });
+  std::vector<BuiltMasses::Entry> built;
+  for (Stretch& stretch : made) {
+    region.report.append(std::move(stretch.report));
+    std::move(stretch.built.begin(), stretch.built.end(), std::back_inserter(built));
   }
-  return builder.take();
+  return BuiltMasses(std::move(built));
 }
 
 }  // namespace blockrand::masses

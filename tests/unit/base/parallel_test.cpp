@@ -171,6 +171,25 @@ TEST(Share, IdleThreadsHelpTheOnlyItem) {
   EXPECT_TRUE(met);
 }
 
+TEST(Share, StretchesCoverAllOnce) {
+  EXPECT_EQ(stretches_to_share(0), (std::vector<std::size_t>{0}));
+  EXPECT_EQ(stretches_to_share(9), (std::vector<std::size_t>{0, 9}));
+  for (const std::size_t count : {1, 2, 5, 100})
+    ordered_parallel(
+        1, 4, 1,
+        [&](std::size_t) {
+          // Others begin to wait a moment after this item began.
+          for (int i = 0; sharing_threads() < 4 && i < 10000; ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+          const std::vector<std::size_t> begins = stretches_to_share(count);
+          EXPECT_EQ(begins.size(), std::min<std::size_t>(count, 12) + 1);
+          EXPECT_EQ(begins.front(), 0u);
+          EXPECT_EQ(begins.back(), count);
+          for (std::size_t i = 1; i < begins.size(); ++i) EXPECT_LT(begins[i - 1], begins[i]);
+        },
+        [](std::size_t) {});
+}
+
 TEST(Share, OutsideOfALoopTheCallerDoesAll) {
   std::vector<std::size_t> order;
   share(3, [&](std::size_t i) { order.push_back(i); });
