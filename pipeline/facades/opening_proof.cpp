@@ -9,8 +9,8 @@
 
 #include "pipeline/geometry/box_index.h"
 #include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/fold_test.h"
 #include "pipeline/geometry/grid.h"
-#include "pipeline/geometry/normal_deviation.h"
 
 namespace blockrand::facades {
 namespace {
@@ -63,11 +63,12 @@ class Proof {
       if (!add_changed(o.wall) || !is_thin_wall(changed_.back())) return false;
       if (!std::binary_search(opened_.changed_borders.begin(), opened_.changed_borders.end(), o.wall) &&
           !std::binary_search(opened_.unfolded.begin(), opened_.unfolded.end(), o.wall) &&
-          geometry::normal_deviation(solid_, solid_.faces[o.wall]) > geometry::kBuilt.normal_deviation)
+          geometry::folds_more_than(solid_, solid_.faces[o.wall], triangles_of(o.wall),
+                                    geometry::kBuilt.normal_deviation))
         return false;
     }
     for (const std::uint32_t f : opened_.changed_borders) {
-      if (!geometry::sound_polygon(solid_, f, !triangles_of(f).empty(), grid_, geometry::kBuilt)) return false;
+      if (!geometry::sound_polygon(solid_, f, triangles_of(f), grid_, geometry::kBuilt)) return false;
       if (changed_of_[f] == kNone && !add_changed(f)) return false;
     }
     for (const model::Opening& o : opened_.openings) {
