@@ -132,19 +132,24 @@ class FlippedTriangles {
     if (twin != kBorder) twins_[twin] = h;
   }
 
+  /// \return false where an edge has more than two sides
   bool find_twins() {
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> edges;
-    edges.reserve(twins_.size());
+    // Half-edges by their lower corner, as many as each has.
+    std::vector<std::uint32_t> first(points_.size() + 1, 0), of_low(twins_.size());
+    const auto low = [&](std::uint32_t h) { return std::min(corner(h), corner(next(h))); };
+    const auto high = [&](std::uint32_t h) { return std::max(corner(h), corner(next(h))); };
+    for (std::uint32_t h = 0; h < twins_.size(); ++h) ++first[low(h) + 1];
+    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+    std::vector<std::uint32_t> end(first.begin(), first.end() - 1);
     for (std::uint32_t h = 0; h < twins_.size(); ++h) {
-      const auto [low, high] = std::minmax({corner(h), corner(next(h))});
-      edges.emplace_back((std::uint64_t{low} << 32) | high, h);
-    }
-    std::sort(edges.begin(), edges.end());
-    for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
-      if (edges[i].first != edges[i + 1].first) continue;
-      if (i + 2 < edges.size() && edges[i + 2].first == edges[i].first) return false;
-      join(edges[i].second, edges[i + 1].second);
-      ++i;
+      for (std::uint32_t k = first[low(h)]; k < end[low(h)]; ++k) {
+        const std::uint32_t other = of_low[k];
+        if (high(other) != high(h)) continue;
+        if (twins_[other] != kBorder) return false;
+        join(h, other);
+        break;
+      }
+      of_low[end[low(h)]++] = h;
     }
     return true;
   }
