@@ -16,6 +16,8 @@ find_package(Eigen3 3.4 CONFIG REQUIRED)
 find_package(GDAL CONFIG REQUIRED)
 find_package(SQLite3 REQUIRED)
 find_package(LibXml2 REQUIRED)
+# Optional: an allocator for the program alone (pipeline/cli/CMakeLists.txt). The archive for position-independent programs.
+find_library(JEMALLOC_LIBRARY libjemalloc_pic.a)
 find_package(ZLIB REQUIRED)
 find_package(PNG REQUIRED)
 find_package(Freetype REQUIRED)

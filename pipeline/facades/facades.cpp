@@ -320,7 +320,7 @@ class FacadeBuilder {
       out.of_asked.push_back(i);
     }
     out.opened = cut_openings(part.lod2, walls, openings, rounding_);
-    auto triangles = geometry::triangulate(out.opened.solid, part.lod2, part.lod2_triangles);
+    auto triangles = geometry::triangulate(out.opened.solid, part.lod2, part.lod2_triangles, out.opened.triangles);
     if (!triangles || !(proved_valid(out.opened, *triangles) ||
                         geometry::check_solid(out.opened.solid, *triangles, geometry::kBuilt).valid()))
       return std::nullopt;

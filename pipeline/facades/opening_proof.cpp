@@ -9,8 +9,8 @@
 
 #include "pipeline/geometry/box_index.h"
 #include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/fold_test.h"
 #include "pipeline/geometry/grid.h"
-#include "pipeline/geometry/normal_deviation.h"
 
 namespace blockrand::facades {
 namespace {
@@ -63,11 +63,12 @@ class Proof {
       if (!add_changed(o.wall) || !is_thin_wall(changed_.back())) return false;
       if (!std::binary_search(opened_.changed_borders.begin(), opened_.changed_borders.end(), o.wall) &&
           !std::binary_search(opened_.unfolded.begin(), opened_.unfolded.end(), o.wall) &&
-          geometry::normal_deviation(solid_, solid_.faces[o.wall]) > geometry::kBuilt.normal_deviation)
+          geometry::folds_more_than(solid_, solid_.faces[o.wall], triangles_of(o.wall),
+                                    geometry::kBuilt.normal_deviation))
         return false;
     }
     for (const std::uint32_t f : opened_.changed_borders) {
-      if (!geometry::sound_polygon(solid_, f, !triangles_of(f).empty(), grid_, geometry::kBuilt)) return false;
+      if (!geometry::sound_polygon(solid_, f, triangles_of(f), grid_, geometry::kBuilt)) return false;
       if (changed_of_[f] == kNone && !add_changed(f)) return false;
     }
     for (const model::Opening& o : opened_.openings) {
@@ -173,11 +174,18 @@ class Proof {
     });
   }
 
-  bool boxes_apart(const Triangle& t, const Grid3& least, const Grid3& most) const {
+  /// The box around something.
+  struct Span {
+    Grid3 least, most;
+    bool apart(const Span& other) const {
+      return most.x < other.least.x || least.x > other.most.x || most.y < other.least.y || least.y > other.most.y ||
+             most.z < other.least.z || least.z > other.most.z;
+    }
+  };
+  Span span_of(const Triangle& t) const {
     const Grid3 &a = grid_[t[0]], &b = grid_[t[1]], &c = grid_[t[2]];
-    return std::max({a.x, b.x, c.x}) < least.x || std::min({a.x, b.x, c.x}) > most.x ||
-           std::max({a.y, b.y, c.y}) < least.y || std::min({a.y, b.y, c.y}) > most.y ||
-           std::max({a.z, b.z, c.z}) < least.z || std::min({a.z, b.z, c.z}) > most.z;
+    return {{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})},
+            {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})}};
   }
 
   /// Triangles of all faces but reveals and openings: a block with thousands of courts has walls everywhere.
@@ -192,7 +200,20 @@ class Proof {
         others_.push_back({t, f});
       }
     }
-    index_ = geometry::BoxIndex(std::move(boxes));
+    // Houses have few faces: looking at each is faster than an index of them.
+    if (boxes.size() * changed_.size() > kMostPairs)
+      index_ = geometry::BoxIndex(std::move(boxes));
+    else
+      boxes_ = std::move(boxes);
+  }
+
+  /// Calls `visit` with the numbers in others_ whose boxes come near.
+  template <class Visit>
+  void for_each_near(const geometry::PlanBox& box, Visit&& visit) const {
+    for (std::uint32_t n = 0; n < boxes_.size(); ++n)
+      if (boxes_[n].near(box, kSure)) visit(n);
+    if (boxes_.empty())
+      for (const std::uint32_t n : index_.near(box, kSure)) visit(n);
   }
 
   /// Whether a triangle of a changed face conflicts with one of another face that is no reveal.
@@ -201,28 +222,29 @@ class Proof {
     geometry::PlanBox box;
     for (const std::uint32_t i : solid_.indices_of(solid_.loops_of(solid_.faces[wall.face])[0]))
       box.include(solid_.vertices[i].xy());
-    for (const std::uint32_t n : index_.near(box, kSure)) {
+    for_each_near(box, [&](std::uint32_t n) {
       const auto& [t, f] = others_[n];
-      if (f == wall.face || (changed_of_[f] != kNone && f < wall.face) || boxes_apart(t, wall.least, wall.most))
-        continue;
+      if (f == wall.face || (changed_of_[f] != kNone && f < wall.face)) return;
+      const Span span = span_of(t);
+      if (span.apart({wall.least, wall.most})) return;
       int before = 0, behind = 0;
       for (const std::uint32_t i : t) {
         const double h = wall.along_normal(solid_.vertices[i]);
         before += h > wall.high + kSure;
         behind += h < wall.low - kSure;
       }
-      if (before < 3 && behind < 3) near_.push_back(t);
-    }
+      if (before < 3 && behind < 3) near_.push_back({t, span});
+    });
     for (const Triangle& mine : triangles_of(wall.face)) {
-      const Grid3 &a = grid_[mine[0]], &b = grid_[mine[1]], &c = grid_[mine[2]];
-      const Grid3 least{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})};
-      const Grid3 most{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})};
-      for (const Triangle& t : near_)
-        if (!boxes_apart(t, least, most) && geometry::triangles_conflict(grid_, mine, t)) return true;
+      const Span span = span_of(mine);
+      for (const auto& [t, of_other] : near_)
+        if (!span.apart(of_other) && geometry::triangles_conflict(grid_, mine, t)) return true;
     }
     return false;
   }
 
+  /// Boxes looked at without an index: below this a tree costs more than it saves.
+  static constexpr std::size_t kMostPairs = 20000;
   /// m; more than doubles are wrong by.
   static constexpr double kSure = 1e-6;
 
@@ -235,7 +257,8 @@ class Proof {
   std::vector<bool> is_new_;                                ///< by face: a reveal, or an opening's polygon
   std::vector<std::pair<Triangle, std::uint32_t>> others_;  ///< with their faces
   geometry::BoxIndex index_;                                ///< of others_
-  std::vector<Triangle> near_;
+  std::vector<geometry::PlanBox> boxes_;                    ///< the same boxes, where there is no index
+  std::vector<std::pair<Triangle, Span>> near_;
 };
 
 }  // namespace

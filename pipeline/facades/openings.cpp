@@ -11,9 +11,11 @@
 #include "pipeline/facades/opening_blocks.h"
 #include "pipeline/facades/outlines.h"
 #include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/fold_test.h"
 #include "pipeline/geometry/grid_side.h"
 #include "pipeline/geometry/normal_deviation.h"
 #include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/geometry/triangulate.h"
 #include "pipeline/model/vector.h"
 
 namespace blockrand::facades {
@@ -199,10 +201,11 @@ class Assembly {
   /// Writes the solid, and what is known of its faces.
   void take(OpenedSolid& out) {
     std::vector<bool> unfolded(solid_.faces.size(), false);
+    std::vector<std::vector<geometry::Triangle>> triangles(solid_.faces.size());
     out.first_border_point = static_cast<std::uint32_t>(out_.vertices.size());
     for (std::uint32_t f = 0; f < solid_.faces.size(); ++f) {
       if (holes_[f].empty()) continue;
-      unfolded[f] = !folds(f);
+      unfolded[f] = !folds(f, triangles[f]);
       if (!unfolded[f]) add_feet(f);
     }
     for (std::uint32_t f = 0; f < solid_.faces.size(); ++f) {
@@ -214,10 +217,12 @@ class Assembly {
       for (const auto& hole : holes_[f]) add_loop(hole);
       face.loop_count = static_cast<std::uint32_t>(out_.loops.size()) - face.first_loop;
       out_.faces.push_back(face);
-      if (changed)
+      if (changed) {
         out.changed_borders.push_back(f);
-      else if (unfolded[f])
-        out.unfolded.push_back(f);
+        continue;
+      }
+      if (unfolded[f]) out.unfolded.push_back(f);
+      if (!triangles[f].empty()) out.triangles.emplace_back(f, std::move(triangles[f]));
     }
     for (const auto& [ring, looks] : added_) {
       model::Face face = looks;
@@ -252,14 +257,33 @@ class Assembly {
     return changed;
   }
 
-  bool folds(std::uint32_t face) const {
+  /// \param triangles  gets those of the wall, where it has some
+  bool folds(std::uint32_t face, std::vector<geometry::Triangle>& triangles) const {
     std::vector<std::vector<Point3>> rings;
+    std::vector<Point3> points;
+    std::vector<geometry::Grid3> grid;
+    std::vector<std::uint32_t> number;
+    std::vector<std::vector<std::uint32_t>> loops;
     const auto add_ring = [&](std::span<const std::uint32_t> ring) {
-      auto& points = rings.emplace_back();
-      for (const std::uint32_t i : ring) points.push_back(out_.vertices[i]);
+      auto& of_ring = rings.emplace_back();
+      auto& loop = loops.emplace_back();
+      for (const std::uint32_t i : ring) {
+        loop.push_back(static_cast<std::uint32_t>(points.size()));
+        number.push_back(i);
+        of_ring.push_back(out_.vertices[i]);
+        points.push_back(out_.vertices[i]);
+        grid.push_back(geometry::to_grid(out_.vertices[i]));
+      }
     };
     for (const auto& loop : solid_.loops_of(solid_.faces[face])) add_ring(solid_.indices_of(loop));
     for (const auto& hole : holes_[face]) add_ring(hole);
+    if (auto made = geometry::triangulate(std::span<const geometry::Grid3>(grid), loops)) {
+      const auto sure = geometry::surely_folds(points, *made, geometry::kBuilt.normal_deviation);
+      for (geometry::Triangle& t : *made)
+        for (std::uint32_t& i : t) i = number[i];
+      triangles = std::move(*made);
+      if (sure) return *sure;
+    }
     const auto found = geometry::normal_deviation(rings);
     return found && found->angle > geometry::kBuilt.normal_deviation;
   }

@@ -1,9 +1,11 @@
 // Cuts windows, doors and passages into the walls of a solid.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pipeline/facades/wall_frame.h"
@@ -67,6 +69,8 @@ struct OpenedSolid {
   /// Walls with holes whose border stayed, measured as they are: they do not fold by more than geometry::kBuilt allows.
   /// Ascending.
   std::vector<std::uint32_t> unfolded;
+  /// Triangles of walls with holes whose border stayed, by geometry::triangulate; ascending by face.
+  std::vector<std::pair<std::uint32_t, std::vector<std::array<std::uint32_t, 3>>>> triangles;
 };
 
 /// Cuts openings in the order given: one that does not fit is left out, and never harms those before it.

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <vector>
 
+#include "pipeline/geometry/fold_test.h"
 #include "pipeline/geometry/normal_deviation.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/ring_defects.h"
@@ -305,6 +306,11 @@ bool is_flat_and_simple(const Solid& solid, const Face& face, const FacePlane& p
   return triangulated && off_plane(solid, face, plane) <= options.planarity && simple_along_normal(solid, face, plane);
 }
 
+std::span<const std::array<std::uint32_t, 3>> triangles_of(const SolidTriangles& triangles, std::uint32_t face) {
+  return std::span(triangles.triangles)
+      .subspan(triangles.first[face], triangles.first[face + 1] - triangles.first[face]);
+}
+
 /// Rings and polygons: 1xx and 2xx. Every loop has three vertices that exist.
 SolidCheck check_faces(const Solid& solid, const SolidTriangles& triangles, std::span<const Grid3> grid,
                        const SolidCheckOptions& options) {
@@ -320,8 +326,8 @@ SolidCheck check_faces(const Solid& solid, const SolidTriangles& triangles, std:
       const SolidCheck c = classify_face(solid, f, grid, options);
       return c.valid() ? SolidCheck{SolidDefect::ring_crosses, f} : c;
     }
-    if (const double angle = normal_deviation(solid, face); angle > options.normal_deviation)
-      return {SolidDefect::folded, f, -1, angle};
+    if (folds_more_than(solid, face, triangles_of(triangles, f), options.normal_deviation))
+      return {SolidDefect::folded, f, -1, normal_deviation(solid, face)};
     if (face.loop_count > 1)
       if (const std::int64_t hole = turned_hole(solid, face, plane, grid)) return {SolidDefect::hole_turned, f, hole};
   }
@@ -458,12 +464,12 @@ SolidCheck check_solid(const Solid& solid) {
   return check_sound_loops(solid, triangles ? *triangles : SolidTriangles{}, half_edges, {});
 }
 
-bool sound_polygon(const Solid& solid, std::uint32_t number, bool triangulated, std::span<const Grid3> vertices,
-                   const SolidCheckOptions& options) {
+bool sound_polygon(const Solid& solid, std::uint32_t number, std::span<const std::array<std::uint32_t, 3>> triangles,
+                   std::span<const Grid3> vertices, const SolidCheckOptions& options) {
   const Face& face = solid.faces[number];
   const FacePlane plane = plane_of(solid, face);
-  return is_flat_and_simple(solid, face, plane, triangulated, options) &&
-         normal_deviation(solid, face) <= options.normal_deviation &&
+  return is_flat_and_simple(solid, face, plane, !triangles.empty(), options) &&
+         !folds_more_than(solid, face, triangles, options.normal_deviation) &&
          (face.loop_count == 1 || turned_hole(solid, face, plane, vertices) == 0);
 }
 

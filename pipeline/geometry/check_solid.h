@@ -47,9 +47,10 @@ SolidCheck check_solid(const model::Solid& solid, const model::SolidTriangles& t
 SolidCheck check_solid(const model::Solid& solid);
 
 /// The rules of polygons (2xx) of one face alone, as check_solid has them. For those who know the rest.
-/// \param triangulated  whether geometry::triangulate found triangles in it
+/// \param triangles  those that geometry::triangulate found in it; none where it found none
 /// \param vertices  the solid's, on the grid
-bool sound_polygon(const model::Solid& solid, std::uint32_t face, bool triangulated, std::span<const Grid3> vertices,
+bool sound_polygon(const model::Solid& solid, std::uint32_t face,
+                   std::span<const std::array<std::uint32_t, 3>> triangles, std::span<const Grid3> vertices,
                    const SolidCheckOptions& options);
 
 /// As above for a mesh of triangles (counter-clockwise from outside) that was read from a file: vertices in whole

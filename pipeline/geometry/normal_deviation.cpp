@@ -5,10 +5,11 @@
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "pipeline/geometry/fitted_frame.h"
 
 namespace blockrand::geometry {
 
@@ -22,40 +23,6 @@ using Cdt =
     CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
                                                CGAL::No_constraint_intersection_tag>;
 using Vector = Eigen::Vector3d;
-
-Vector between(const model::Point3& from, const model::Point3& to) {
-  return {to.x - from.x, to.y - from.y, to.z - from.z};
-}
-
-/// Two directions in the fitted plane, and its normal.
-struct Frame {
-  model::Point3 origin;
-  Vector right, up, normal;
-};
-
-Frame fitted_frame(std::span<const std::vector<model::Point3>> rings) {
-  Frame out;
-  out.origin = rings[0][0];
-  Vector mean = Vector::Zero();
-  double count = 0;
-  for (const auto& ring : rings)
-    for (const model::Point3& p : ring) {
-      mean += between(out.origin, p);
-      ++count;
-    }
-  mean /= count;
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const auto& ring : rings)
-    for (const model::Point3& p : ring) {
-      const Vector d = between(out.origin, p) - mean;
-      spread += d * d.transpose();
-    }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);  // from the least spread to the largest
-  out.normal = axes.eigenvectors().col(0);
-  out.right = axes.eigenvectors().col(2);
-  out.up = out.normal.cross(out.right);
-  return out;
-}
 
 /// Every face's number of constraints towards the outside; odd ones lie within the polygon.
 void mark_nesting(Cdt& cdt) {
@@ -77,25 +44,50 @@ double angle_between(const Vector& a, const Vector& b) {
 /// m. Faces whose points lie nearer to the plane through three of them have no folds: doubles are wrong by this.
 constexpr double kFlat = 1e-7;
 
-bool is_flat(std::span<const std::vector<model::Point3>> rings) {
-  const auto& outer = rings[0];
+}  // namespace
+
+bool is_flat(const model::Solid& solid, const model::Face& face) {
+  const auto loops = solid.loops_of(face);
+  const auto outer = solid.indices_of(loops[0]);
+  const model::Point3 origin = solid.vertices[outer[0]];
   Vector sum = Vector::Zero();
   for (std::size_t i = 1; i + 1 < outer.size(); ++i)
-    sum += between(outer[0], outer[i]).cross(between(outer[0], outer[i + 1]));
+    sum += between(origin, solid.vertices[outer[i]]).cross(between(origin, solid.vertices[outer[i + 1]]));
   const double size = sum.norm();
   if (!(size > 0)) return false;
   const Vector normal = sum / size;
-  for (const auto& ring : rings)
-    for (const model::Point3& p : ring)
-      if (std::fabs(between(outer[0], p).dot(normal)) > kFlat) return false;
+  for (const auto& loop : loops)
+    for (const std::uint32_t i : solid.indices_of(loop))
+      if (std::fabs(between(origin, solid.vertices[i]).dot(normal)) > kFlat) return false;
   return true;
 }
 
-}  // namespace
+Frame fitted_frame(std::span<const model::Point3> points) {
+  Frame out;
+  out.origin = points[0];
+  Vector mean = Vector::Zero();
+  double count = 0;
+  for (const model::Point3& p : points) {
+    mean += between(out.origin, p);
+    ++count;
+  }
+  mean /= count;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const model::Point3& p : points) {
+    const Vector d = between(out.origin, p) - mean;
+    spread += d * d.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);  // from the least spread to the largest
+  out.normal = axes.eigenvectors().col(0);
+  out.right = axes.eigenvectors().col(2);
+  out.up = out.normal.cross(out.right);
+  return out;
+}
 
 double normal_deviation(const model::Solid& solid, const model::Face& face) {
   const auto loops = solid.loops_of(face);
   if (loops.size() == 1 && loops[0].count == 3) return 0;
+  if (is_flat(solid, face)) return 0;
   std::vector<std::vector<model::Point3>> rings;
   rings.reserve(loops.size());
   for (const auto& loop : loops) {
@@ -103,7 +95,6 @@ double normal_deviation(const model::Solid& solid, const model::Face& face) {
     ring.reserve(loop.count);
     for (const std::uint32_t i : solid.indices_of(loop)) ring.push_back(solid.vertices[i]);
   }
-  if (is_flat(rings)) return 0;
   const auto found = normal_deviation(rings);
   return found ? found->angle : 0;  // rings that cross are told as such
 }
@@ -111,7 +102,9 @@ double normal_deviation(const model::Solid& solid, const model::Face& face) {
 std::optional<NormalDeviation> normal_deviation(std::span<const std::vector<model::Point3>> rings) {
   NormalDeviation out;
   if (rings.size() == 1 && rings[0].size() == 3) return out;  // nothing to compare with
-  const Frame frame = fitted_frame(rings);
+  std::vector<model::Point3> all;
+  for (const auto& ring : rings) all.insert(all.end(), ring.begin(), ring.end());
+  const Frame frame = fitted_frame(all);
   Cdt cdt;
   std::size_t points = 0;
   try {

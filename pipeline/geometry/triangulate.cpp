@@ -97,8 +97,8 @@ void mark_nesting(Cdt& cdt, IsWall&& is_wall) {
 
 /// Two triangles of a convex quadrilateral along the diagonal that leaves the larger smallest area; none when the
 /// quadrilateral is not strictly convex.
-std::optional<std::array<Triangle, 2>> split_convex(std::span<const Grid2> p, const std::vector<std::uint32_t>& q) {
-  const auto twice_area = [&](int a, int b, int c) {
+std::optional<std::array<Triangle, 2>> split_convex(std::span<const Grid2> p, std::span<const std::uint32_t> q) {
+  const auto twice_area = [&](std::size_t a, std::size_t b, std::size_t c) {
     const Grid2 u = p[q[b]] - p[q[a]], v = p[q[c]] - p[q[a]];
     return static_cast<Int128>(u.x) * v.y - static_cast<Int128>(u.y) * v.x;
   };
@@ -215,13 +215,95 @@ bool same_face(const model::Solid& before, const model::Solid& after, std::size_
 
 std::optional<model::SolidTriangles> triangulate(const model::Solid& solid) { return triangulate(solid, {}, {}); }
 
-std::optional<model::SolidTriangles> triangulate(const model::Solid& solid, const model::Solid& before,
-                                                 const model::SolidTriangles& known) {
+namespace {
+
+/// How a face is seen from outside along the largest component of its normal, so that counter-clockwise stays
+/// counter-clockwise.
+class View {
+ public:
+  /// Of the normal of a loop, exact. \return nothing where it has no area
+  template <class At>
+  static std::optional<View> of_loop(std::size_t count, At&& at) {
+    Int128 nx = 0, ny = 0, nz = 0;
+    const Grid3 origin = at(0);
+    Grid3 a{};
+    for (std::size_t k = 1; k <= count; ++k) {
+      const Grid3 b = k == count ? Grid3{} : at(k) - origin;
+      nx += static_cast<Int128>(a.y) * b.z - static_cast<Int128>(a.z) * b.y;
+      ny += static_cast<Int128>(a.z) * b.x - static_cast<Int128>(a.x) * b.z;
+      nz += static_cast<Int128>(a.x) * b.y - static_cast<Int128>(a.y) * b.x;
+      a = b;
+    }
+    const auto magnitude = [](Int128 v) { return v < 0 ? -v : v; };
+    if (nx == 0 && ny == 0 && nz == 0) return std::nullopt;
+    if (magnitude(nz) >= magnitude(nx) && magnitude(nz) >= magnitude(ny)) return View(Drop::z, nz > 0);
+    if (magnitude(nx) >= magnitude(ny)) return View(Drop::x, nx > 0);
+    return View(Drop::y, ny > 0);
+  }
+  Grid2 operator()(Grid3 p) const {
+    switch (drop_) {
+      case Drop::z:
+        return before_ ? Grid2{p.x, p.y} : Grid2{p.y, p.x};
+      case Drop::x:
+        return before_ ? Grid2{p.y, p.z} : Grid2{p.z, p.y};
+      case Drop::y:
+        break;
+    }
+    return before_ ? Grid2{p.z, p.x} : Grid2{p.x, p.z};
+  }
+
+ private:
+  enum class Drop { x, y, z };
+  View(Drop drop, bool before) : drop_(drop), before_(before) {}
+  Drop drop_;
+  bool before_;
+};
+
+/// Two triangles of a quadrangle that is strictly convex in its view: what most faces are.
+std::optional<std::array<Triangle, 2>> two_triangles(std::span<const Grid3> points,
+                                                     std::span<const std::uint32_t> loop) {
+  const auto view = View::of_loop(4, [&](std::size_t k) { return points[loop[k]]; });
+  if (!view) return std::nullopt;
+  std::array<Grid2, 4> flat;
+  for (std::size_t k = 0; k < 4; ++k) flat[k] = (*view)(points[loop[k]]);
+  auto two = split_convex(flat, std::array<std::uint32_t, 4>{0, 1, 2, 3});
+  if (two)
+    for (Triangle& t : *two)
+      for (std::uint32_t& i : t) i = loop[i];
+  return two;
+}
+
+}  // namespace
+
+std::optional<std::vector<Triangle>> triangulate(std::span<const Grid3> points,
+                                                 std::span<const std::vector<std::uint32_t>> loops) {
+  const auto view = View::of_loop(loops[0].size(), [&](std::size_t k) { return points[loops[0][k]]; });
+  if (!view) return std::nullopt;
+  // Only the polygon's own points are projected: it may be one of thousands of a solid.
+  std::vector<Grid2> flat;
+  std::vector<std::uint32_t> number;
+  std::vector<std::vector<std::uint32_t>> own(loops.size());
+  for (std::size_t l = 0; l < loops.size(); ++l)
+    for (const std::uint32_t i : loops[l]) {
+      own[l].push_back(static_cast<std::uint32_t>(flat.size()));
+      number.push_back(i);
+      flat.push_back((*view)(points[i]));
+    }
+  auto out = triangulate(flat, own);
+  if (out)
+    for (Triangle& t : *out)
+      for (std::uint32_t& i : t) i = number[i];
+  return out;
+}
+
+std::optional<model::SolidTriangles> triangulate(
+    const model::Solid& solid, const model::Solid& before, const model::SolidTriangles& known,
+    std::span<const std::pair<std::uint32_t, std::vector<Triangle>>> ready) {
   model::SolidTriangles out;
   out.first.reserve(solid.faces.size() + 1);
+  out.triangles.reserve(2 * solid.faces.size());
   std::vector<Grid3> grid(solid.vertices.size());
   for (std::size_t i = 0; i < grid.size(); ++i) grid[i] = to_grid(solid.vertices[i]);
-  std::vector<Grid2> flat(solid.vertices.size());
   std::vector<std::vector<std::uint32_t>> loops;
   for (std::size_t f = 0; f < solid.faces.size(); ++f) {
     const model::Face& face = solid.faces[f];
@@ -231,39 +313,24 @@ std::optional<model::SolidTriangles> triangulate(const model::Solid& solid, cons
                            known.triangles.begin() + known.first[f + 1]);
       continue;
     }
+    while (!ready.empty() && ready.front().first < f) ready = ready.subspan(1);
+    if (!ready.empty() && ready.front().first == f) {
+      out.triangles.insert(out.triangles.end(), ready.front().second.begin(), ready.front().second.end());
+      continue;
+    }
     const auto face_loops = solid.loops_of(face);
+    if (face_loops.size() == 1 && face_loops[0].count == 4)
+      if (const auto two = two_triangles(grid, solid.indices_of(face_loops[0]))) {
+        out.triangles.insert(out.triangles.end(), two->begin(), two->end());
+        continue;
+      }
     loops.resize(face_loops.size());
     for (std::size_t l = 0; l < face_loops.size(); ++l) {
       const auto indices = solid.indices_of(face_loops[l]);
       loops[l].assign(indices.begin(), indices.end());
       if (loops[l].size() < 3) return std::nullopt;
     }
-    // Newell's normal of the outer loop, exact.
-    Int128 nx = 0, ny = 0, nz = 0;
-    const Grid3 origin = grid[loops[0][0]];
-    for (std::size_t k = 0; k < loops[0].size(); ++k) {
-      const Grid3 a = grid[loops[0][k]] - origin, b = grid[loops[0][(k + 1) % loops[0].size()]] - origin;
-      nx += static_cast<Int128>(a.y) * b.z - static_cast<Int128>(a.z) * b.y;
-      ny += static_cast<Int128>(a.z) * b.x - static_cast<Int128>(a.x) * b.z;
-      nz += static_cast<Int128>(a.x) * b.y - static_cast<Int128>(a.y) * b.x;
-    }
-    const auto magnitude = [](Int128 v) { return v < 0 ? -v : v; };
-    const bool use_z = magnitude(nz) >= magnitude(nx) && magnitude(nz) >= magnitude(ny);
-    const bool use_x = !use_z && magnitude(nx) >= magnitude(ny);
-    if (nx == 0 && ny == 0 && nz == 0) return std::nullopt;
-    for (const auto& loop : loops) {
-      for (const std::uint32_t i : loop) {
-        const Grid3 p = grid[i];
-        // Looked at from outside, against the normal, so that counter-clockwise stays counter-clockwise.
-        if (use_z)
-          flat[i] = nz > 0 ? Grid2{p.x, p.y} : Grid2{p.y, p.x};
-        else if (use_x)
-          flat[i] = nx > 0 ? Grid2{p.y, p.z} : Grid2{p.z, p.y};
-        else
-          flat[i] = ny > 0 ? Grid2{p.z, p.x} : Grid2{p.x, p.z};
-      }
-    }
-    const auto triangles = triangulate(flat, loops);
+    const auto triangles = triangulate(std::span<const Grid3>(grid), loops);
     if (!triangles) return std::nullopt;
     out.triangles.insert(out.triangles.end(), triangles->begin(), triangles->end());
   }

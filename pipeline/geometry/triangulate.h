@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "pipeline/geometry/grid.h"
@@ -35,10 +36,18 @@ std::optional<model::SolidTriangles> triangulate(const model::Solid& solid);
 /// points. Vertices keep their numbers. False for faces that the other does not have.
 bool same_face(const model::Solid& before, const model::Solid& after, std::size_t face);
 
+/// The same of one polygon: its triangles, counter-clockwise seen from outside.
+/// \param points  on the grid
+/// \param loops  of indices into points, three at least in each: the outer one first
+std::optional<std::vector<Triangle>> triangulate(std::span<const Grid3> points,
+                                                 std::span<const std::vector<std::uint32_t>> loops);
+
 /// As above for a solid that begins with the faces and vertices of another, of which some got more loops or points:
 /// faces that are the same as before (same_face) take their triangles from `known`.
 /// \param known  triangulate(before)
-std::optional<model::SolidTriangles> triangulate(const model::Solid& solid, const model::Solid& before,
-                                                 const model::SolidTriangles& known);
+/// \param ready  triangles of faces that were triangulated already, ascending
+std::optional<model::SolidTriangles> triangulate(
+    const model::Solid& solid, const model::Solid& before, const model::SolidTriangles& known,
+    std::span<const std::pair<std::uint32_t, std::vector<Triangle>>> ready = {});
 
 }  // namespace blockrand::geometry

@@ -1,7 +1,6 @@
 #include "pipeline/run/build_areas.h"
 
 #include <fmt/format.h>
-#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -16,6 +15,7 @@
 #include "importers/osm/apply_changes.h"
 #include "pipeline/base/child_process.h"
 #include "pipeline/base/error.h"
+#include "pipeline/base/heap.h"
 #include "pipeline/base/pack.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/publish.h"
@@ -68,19 +68,11 @@ AreaOutcome outcome_of(BuildSummary&& s) {
           std::move(s.open_walls)};
 }
 
-/// Of this process from here on: what is freed goes back to the system. 9 to 14 % less at the peak of a dense area at LoD3, for 1 %
-/// more CPU time.
-void keep_memory_low() {
-  constexpr int kKept = 200'000;  // bytes at the end of the heap
-  ::mallopt(M_TRIM_THRESHOLD, kKept);
-  ::mallopt(M_MMAP_THRESHOLD, 128 * 1024);
-}
-
 /// The extract as a store, sorted first where it is not. In a process of its own, so that its buffers are gone afterwards.
 /// \returns  its peak of memory, bytes
 std::uint64_t divide(const BuildOptions& options, int level, const std::string& work, base::Progress& progress) {
   const base::ChildResult result = base::run_in_child(options.input, [&](base::Progress& child) {
-    keep_memory_low();
+    base::keep_memory_low();
     std::error_code error;
     fs::create_directories(work, error);
     const std::string store = work + "/store", sorted = work + "/sorted.osm.pbf";
@@ -334,7 +326,7 @@ class AreaBuild {
     base::run_in_children(
         todo.size(), at_once_,
         [&](std::size_t t, base::Progress& child) {
-          keep_memory_low();
+          base::keep_memory_low();
           of_area.output = place_of(parts_[todo[t]].choice.id);
           return base::packed(outcome_of(build_area(of_area, parts_[todo[t]], child)));
         },
@@ -501,7 +493,7 @@ BuildSummary build_one_area(const BuildOptions& options, base::Progress& progres
     throw base::InputError(options.pinned, "areas", "has no area " + options.area,
                            "Name one of those that it lists, and the record of a build with --areas");
   choice.placeless = store.has_placeless() && pinned["areas"].begin().key() == options.area;
-  keep_memory_low();
+  base::keep_memory_low();
   return build_area(of_area, {store, choice}, progress);
 }
 

@@ -1,13 +1,13 @@
 #include "pipeline/run/prepare_extract.h"
 
 #include <fmt/format.h>
-#include <malloc.h>
 
 #include <cmath>
 #include <utility>
 
 #include "importers/osm/read_extract.h"
 #include "pipeline/base/error.h"
+#include "pipeline/base/heap.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/evidence/region_priors.h"
 #include "pipeline/footprints/load.h"
@@ -54,7 +54,7 @@ LocatedExtract locate_extract(const BuildOptions& options, const std::optional<T
   model::Extract extract = store && tile ? store->read(tile->id, read_options, tile->placeless)
                                          : importers::osm::read_extract(options.input, read_options);
   if (!options.input_told.empty()) extract.file = options.input_told;
-  malloc_trim(0);  // libosmium's buffers go back to the system before tiles need the room
+  base::give_memory_back();  // libosmium's buffers go back to the system before tiles need the room
 
   progress.begin("locate");
   const std::optional<footprints::Area> area = footprints::area_of(extract);
@@ -94,7 +94,7 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
   repair::KeptNodes kept(extract);
   footprints::RepairedExtract repaired =
       footprints::repair_extract(extract, shards, located.projection, kept, options.repair, workers, progress, memo);
-  malloc_trim(0);
+  base::give_memory_back();
   if (!tile) {
     const std::vector<model::Point2> places = footprints::building_places(extract, located.projection);
     located.facts.coverage = context::coverage_of(places);
@@ -102,7 +102,7 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
   if (correct && correct(shards, repaired)) {
     repaired =
         footprints::repair_extract(extract, shards, located.projection, kept, options.repair, workers, progress, memo);
-    malloc_trim(0);
+    base::give_memory_back();
   }
   const context::UseOfTags use_of = [&](const std::function<std::string_view(std::string_view)>& tag) {
     const auto category = tables.ground_floor.category(tag);
@@ -110,7 +110,7 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
   };
   context::ContextExtract context = context::context_extract(extract, repaired.footprints, located.facts.coverage,
                                                              located.projection, workers, progress, use_of, memo);
-  malloc_trim(0);
+  base::give_memory_back();
   evidence::Needed needed;  // of a tile or an area: those around it matter as far as they are heard
   if (tile) {
     std::vector<std::uint32_t> asked;
@@ -123,7 +123,7 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
                                                          workers, progress, memo, needed);
   evidence::TagFacts tags =
       evidence::tag_facts(extract, repaired.footprints, context, tables, located.projection, facts);
-  malloc_trim(0);
+  base::give_memory_back();
   evidence::StyleExtract styles = evidence::classify_extract(
       facts, tags, tables, evidence::prior_by_place(extract, repaired.footprints, book, tables), {}, workers, progress,
       needed);

@@ -67,8 +67,7 @@ Derivation Deriver::run(const Shape& initial, const DeriveOptions& options) cons
   return second.go();
 }
 
-std::vector<std::uint32_t> Deriver::outside_values(
-    const std::vector<std::pair<std::string, Value>>& attributes) const {
+std::vector<std::uint32_t> Deriver::outside_values(const std::vector<std::pair<std::string, Value>>& attributes) const {
   std::vector<std::uint32_t> out;
   for (const Slot& slot : prepared_->program.slots) out.push_back(find_outside(slot, attributes));
   return out;

@@ -147,7 +147,8 @@ void Run::evaluate_attributes() {
   initial_.attributes = std::make_shared<const std::vector<Value>>(std::move(phase.values));
   if (options_.orders_only) return;
   for (const std::uint32_t slot : program_.slot_order)
-    if (!program_.slots[slot].constant) out_.attributes.emplace_back(program_.slots[slot].name, (*initial_.attributes)[slot]);
+    if (!program_.slots[slot].constant)
+      out_.attributes.emplace_back(program_.slots[slot].name, (*initial_.attributes)[slot]);
   for (const auto& [name, value] : options_.attributes) {
     const std::string wanted = attribute_name(name);
     if (is_engine_prefix(name.substr(0, name.find('.')))) continue;

@@ -23,8 +23,7 @@ void Run::run_item(NodeId successor, Shape piece, Work& parent, Place& place) {
   std::optional<Shape> base;
   const bool single =
       item.kind == SuccessorKind::steps && item.steps.count == 1 && unit.steps[item.steps.first].kind == StepKind::call;
-  if (!single ||
-      target(place.module, unit.calls[unit.steps[item.steps.first].call].use).kind == TargetKind::operation)
+  if (!single || target(place.module, unit.calls[unit.steps[item.steps.first].call].use).kind == TargetKind::operation)
     base = piece;
   Work inner{.shape = std::move(piece), .base = base ? &*base : nullptr, .lineage = lineage};
   Place there = place;

@@ -1,0 +1,43 @@
+#include "pipeline/base/heap.h"
+
+#include <malloc.h>
+
+#include <cstddef>
+#include <cstdio>
+
+// jemalloc's (its manual, section MALLCTL NAMESPACE); null where the program uses glibc's heap.
+extern "C" int mallctl(const char* name, void* old, std::size_t* old_size, void* given, std::size_t given_size)
+    __attribute__((weak));
+
+namespace blockrand::base {
+
+void give_memory_back() {
+  if (mallctl == nullptr) {
+    ::malloc_trim(0);
+    return;
+  }
+  constexpr const char* kAllArenas = "arena.4096.purge";  // MALLCTL_ARENAS_ALL
+  mallctl(kAllArenas, nullptr, nullptr, nullptr, 0);
+}
+
+void keep_memory_low() {
+  if (mallctl == nullptr) {
+    constexpr int kKept = 200'000;  // bytes at the end of the heap
+    ::mallopt(M_TRIM_THRESHOLD, kKept);
+    ::mallopt(M_MMAP_THRESHOLD, 128 * 1024);
+    return;
+  }
+  // Pages that are free go back after this; at once would cost a fifth more time.
+  std::ptrdiff_t decay = 100;  // ms
+  mallctl("arenas.dirty_decay_ms", nullptr, nullptr, &decay, sizeof(decay));
+  unsigned arenas = 0;
+  std::size_t size = sizeof(arenas);
+  if (mallctl("arenas.narenas", &arenas, &size, nullptr, 0) != 0) return;
+  for (unsigned a = 0; a < arenas; ++a) {
+    char name[64];
+    std::snprintf(name, sizeof(name), "arena.%u.dirty_decay_ms", a);
+    mallctl(name, nullptr, nullptr, &decay, sizeof(decay));
+  }
+}
+
+}  // namespace blockrand::base
