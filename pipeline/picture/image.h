@@ -18,7 +18,7 @@ struct Image {
   friend bool operator==(const Image&, const Image&) = default;
 };
 
-/// The picture as a PNG file: 8-bit RGB marked as sRGB, no time chunk, the same bytes each time (with the same zlib).
+/// The picture as a PNG file: 8-bit RGB marked as sRGB, no time chunk, the same bytes each time (with the same libdeflate).
 /// \throws std::runtime_error  the image has no pixels, or its buffer does not fit its size
 std::string png(const Image& image);
 
