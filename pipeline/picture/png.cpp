@@ -34,12 +34,12 @@ enum class ColourType : char { rgb = 2, palette = 3 };
 enum class Filter : char { none = 0, sub = 1, up = 2, paeth = 4 };
 
 /// A file of these rows, each with its filter before it.
-std::string file_of(const Image& image, int bits, ColourType type, std::string_view palette, std::string_view rows,
+std::string file_of(int width, int height, int bits, ColourType type, std::string_view palette, std::string_view rows,
                     int level) {
   std::string out = "\x89PNG\r\n\x1a\n";
   std::string header;
-  append_number(header, static_cast<std::size_t>(image.width));
-  append_number(header, static_cast<std::size_t>(image.height));
+  append_number(header, static_cast<std::size_t>(width));
+  append_number(header, static_cast<std::size_t>(height));
   header += static_cast<char>(bits);
   header += static_cast<char>(type);
   header.append(3, '\0');  // deflate, adaptive filters, not interlaced
@@ -119,36 +119,46 @@ std::size_t checked_row(const Image& image) {
 }  // namespace
 
 std::string png(const Image& image) {
-  constexpr int kLevel = 5;
+  constexpr int kLevel = 3;
   const std::size_t row = checked_row(image);
   std::string rows;
   rows.reserve((row + 1) * static_cast<std::size_t>(image.height));
   RowFilter filter(row);
   for (int y = 0; y < image.height; ++y) filter.append(image.rgb.data() + static_cast<std::size_t>(y) * row, rows);
-  return file_of(image, 8, ColourType::rgb, {}, rows, kLevel);
+  return file_of(image.width, image.height, 8, ColourType::rgb, {}, rows, kLevel);
 }
 
 std::string palette_png(const Image& image, int colours) {
   constexpr int kLevel = 9;
   checked_row(image);
-  const PaletteImage reduced = reduce_colours(image, colours);
+  return png(image.width, reduce_colours(image, colours), kLevel);
+}
+
+std::string png(int width, const PaletteImage& image, int level) {
   std::string palette;
-  for (const model::Colour& c : reduced.palette)
+  for (const model::Colour& c : image.palette)
     for (const std::uint8_t v : {c.r, c.g, c.b}) palette += static_cast<char>(v);
-  const int bits = reduced.palette.size() <= 16 ? 4 : 8;
+  const int bits = image.palette.size() <= 16 ? 4 : 8;
+  const int height = static_cast<int>(image.pixels.size() / static_cast<std::size_t>(width));
   // Neighbours in a palette are no neighbours in colour: differences say nothing.
   std::string rows;
-  const std::uint8_t* pixel = reduced.pixels.data();
-  for (int y = 0; y < image.height; ++y) {
+  rows.reserve((static_cast<std::size_t>(width) + 1) * static_cast<std::size_t>(height));
+  const std::uint8_t* pixel = image.pixels.data();
+  for (int y = 0; y < height; ++y) {
     rows += static_cast<char>(Filter::none);
-    for (int x = 0; x < image.width; ++x, ++pixel) {
-      if (bits == 8 || x % 2 == 0)
-        rows += static_cast<char>(bits == 8 ? *pixel : *pixel << 4);
+    if (bits == 8) {
+      rows.append(reinterpret_cast<const char*>(pixel), static_cast<std::size_t>(width));
+      pixel += width;
+      continue;
+    }
+    for (int x = 0; x < width; ++x, ++pixel) {
+      if (x % 2 == 0)
+        rows += static_cast<char>(*pixel << 4);
       else
         rows.back() = static_cast<char>(rows.back() | *pixel);
     }
   }
-  return file_of(image, bits, ColourType::palette, palette, rows, kLevel);
+  return file_of(width, height, bits, ColourType::palette, palette, rows, level);
 }
 
 namespace {
@@ -214,6 +224,25 @@ Image cut(const Image& image, int column, int row, int width, int height) {
     out.rgb.insert(out.rgb.end(), from, from + 3 * static_cast<std::ptrdiff_t>(out.width));
   }
   return out;
+}
+
+Image blank(int width, int height, model::Colour colour) {
+  Image image{width, height, {}};
+  image.rgb.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
+    image.rgb[i] = colour.r;
+    image.rgb[i + 1] = colour.g;
+    image.rgb[i + 2] = colour.b;
+  }
+  return image;
+}
+
+void put(Image& on, const Image& picture, int column, int row) {
+  const int left = std::max(0, column), right = std::min(on.width, column + picture.width);
+  if (left >= right) return;
+  for (int y = std::max(0, row); y < std::min(on.height, row + picture.height); ++y)
+    std::copy_n(picture.pixel(left - column, y - row), static_cast<std::size_t>(right - left) * 3,
+                on.rgb.begin() + (static_cast<std::ptrdiff_t>(y) * on.width + left) * 3);
 }
 
 }  // namespace blockrand::picture
