@@ -246,7 +246,9 @@ class Shader {
     if (plain(left, top, supersampling, what)) {
       if (what == kNothing) return background_;
       const int middle = supersampling / 2;
-      return coloured(what, left + middle, top + middle, nullptr);
+      // The light of the sky changes slowly along a face.
+      if (x == 0 || what != held_.what || ++held_.uses == kHeld) held_ = {.what = what, .uses = 0, .open = -1};
+      return coloured(what, left + middle, top + middle, nullptr, &held_.open);
     }
     Rgb sum;
     std::optional<Lit> lit;  // the last sample's
@@ -290,7 +292,7 @@ class Shader {
   Rgb sample(int x, int y, std::optional<Lit>& lit) {
     const std::size_t i = samples_.index(x, y);
     const std::uint32_t what = samples_.what(i);
-    Rgb colour = what == kNothing ? background_ : coloured(what, x, y, &lit);
+    Rgb colour = what == kNothing ? background_ : coloured(what, x, y, &lit, nullptr);
     if (options_.lines && edges_.at(x, y)) {
       // Far away, where houses are a few samples wide, full lines would be all that is left of them.
       const double size = what < kGroundPlane ? view_.sample_size(samples_.nearness(i)) : kFineSample;
@@ -300,7 +302,9 @@ class Shader {
     return colour;
   }
 
-  Rgb coloured(std::uint32_t what, int x, int y, std::optional<Lit>* lit) {
+  /// \param lit   the light of a sample beside it, and then of this one; null: of none
+  /// \param open  the share of the sky that is open; negative: it is looked up, and told here; null: it is looked up
+  Rgb coloured(std::uint32_t what, int x, int y, std::optional<Lit>* lit, float* open) {
     const float nearness = samples_.nearness(samples_.index(x, y));
     const Surface& surface = what == kGroundPlane ? ground_ : surface_of(what);
     const Point3 place = view_.position(x + 0.5, y + 0.5, nearness);
@@ -310,13 +314,14 @@ class Shader {
       if (lit && *lit && same_light(**lit, surface.normal, nearness)) {
         arriving = (*lit)->arriving;
       } else {
-        arriving = light_at(surface, place);
+        arriving = light_at(surface, place, open);
         if (lit) *lit = Lit{surface.normal, nearness, arriving};
       }
       colour = colour * arriving * 0.45f;
       colour = {compressed(colour.r), compressed(colour.g), compressed(colour.b)};
     }
-    if (what == kGroundPlane) colour = mix(colour, background_, faded(place));
+    if (what == kGroundPlane)
+      if (const float share = faded(place); share > 0) colour = mix(colour, background_, share);
     return colour;
   }
 
@@ -326,7 +331,7 @@ class Shader {
     return away < limit && away > -limit;
   }
 
-  Rgb light_at(const Surface& surface, Point3 place) const {
+  Rgb light_at(const Surface& surface, Point3 place, float* known_open) const {
     const Scene::Vector p{static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z)};
     Surface turned;
     const Surface* s = &surface;
@@ -341,7 +346,9 @@ class Shader {
     }
     // Warm sun, cool sky, and a little light from the ground for what faces down.
     const float facing = s->facing > 0 ? s->facing * lighting_.sun(p, s->normal) : 0.0f;
-    const float open = lighting_.sky() ? lighting_.sky()->open(s->sky, p.x, p.y, p.z) : 1.0f;
+    float open = known_open ? *known_open : -1;
+    if (open < 0) open = lighting_.sky() ? lighting_.sky()->open(s->sky, p.x, p.y, p.z) : 1.0f;
+    if (known_open) *known_open = open;
     const auto strength = static_cast<float>(options_.sky_strength);
     const float sky = strength * (0.5f + 0.5f * s->normal.z) * open;
     const float bounce = strength * (0.10f + 0.14f * (0.5f - 0.5f * s->normal.z));
@@ -384,12 +391,20 @@ class Shader {
   /// How far a place of the ground has faded into the background.
   float faded(Point3 place) const {
     const Point3 d = place - centre_;
+    const double near = options_.ground_fade * radius_;
+    if (d.x * d.x + d.y * d.y <= near * near) return 0;
     const double distance = std::sqrt(d.x * d.x + d.y * d.y) / radius_ - options_.ground_fade;
     const double share = std::clamp(distance / (0.6 * options_.ground_fade), 0.0, 1.0);
     return static_cast<float>(share * share * (3 - 2 * share));
   }
 
   static constexpr std::size_t kKept = 256;  // surfaces
+  static constexpr int kHeld = 4;            // pixels
+  struct {
+    std::uint32_t what = kNothing;
+    int uses = 0;
+    float open = -1;
+  } held_;
   const Scene& scene_;
   const View& view_;
   const Samples& samples_;

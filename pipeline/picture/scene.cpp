@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <iterator>
+#include <utility>
 
 #include "pipeline/model/vector.h"
 
@@ -138,6 +139,16 @@ void Scene::append(const Scene& other, std::uint32_t first_object) {
     faces_.push_back(face);
   }
   blends_.insert(blends_.end(), other.blends_.begin(), other.blends_.end());
+  if (!ground_) ground_ = other.ground_;
+}
+
+void Scene::append(Scene&& other, std::uint32_t first_object) {
+  if (!empty()) return append(std::as_const(other), first_object);
+  assert(origin_ == other.origin_);
+  triangles_ = std::move(other.triangles_);
+  faces_ = std::move(other.faces_);
+  blends_ = std::move(other.blends_);
+  for (Face& face : faces_) face.object += first_object;
   if (!ground_) ground_ = other.ground_;
 }
 

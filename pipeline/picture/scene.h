@@ -53,6 +53,10 @@ class Scene {
   void set_ground(double z, Colour colour);
   /// Everything of `other`, whose origin must be the same, its objects renumbered by adding `first_object`.
   void append(const Scene& other, std::uint32_t first_object = 0);
+  /// Likewise; where this is empty, the lists of `other` become its own.
+  void append(Scene&& other, std::uint32_t first_object = 0);
+  /// Room for so many triangles more.
+  void reserve(std::size_t triangles) { triangles_.reserve(triangles_.size() + triangles); }
   /// The same without some objects. \param hidden  by object; what lies behind its end stays
   Scene without(const std::vector<bool>& hidden) const;
 

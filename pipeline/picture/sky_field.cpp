@@ -176,8 +176,8 @@ float SkyField::open(const Asker& asker, float x, float y, float z) const {
   for (int k = 0; k < 4; ++k) {
     const Cell& cell = *cells[k];
     if (cell.top > reach) continue;
-    float here = 0;
-    for (std::size_t p = 0; p < 6; ++p) here += asker.parts[p] * cell.taken[p];
+    float here = asker.parts[0] * cell.taken[0];
+    for (std::size_t p = 1; asker.parts[0] < 1 && p < 6; ++p) here += asker.parts[p] * cell.taken[p];
     // The higher up, the less of what stands around rises above.
     const float up = std::clamp((z - cell.top) / std::max(cell.around - cell.top, 1.0f), 0.0f, 1.0f);
     taken += weights[k] * std::max(here, 0.0f) * (1 - up);

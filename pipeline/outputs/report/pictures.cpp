@@ -221,6 +221,7 @@ picture::Box box_around(std::span<const Point3> points) {
 
 constexpr double kElevation = 38, kFieldOfView = 30, kMargin = 0.07;
 constexpr int kWidth = 1200, kHeight = 750;
+constexpr int kPairWidth = 832, kPairHeight = 520;  // two stand side by side
 
 /// The view that shows most: a long town is seen from its side. The south-west is preferred unless another is much nearer.
 View best_view(std::span<const Point3> points) {
@@ -324,9 +325,9 @@ PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, s
 }
 
 void Pictures::add(PictureTile&& tile) {
-  scene_.append(tile.scene, static_cast<std::uint32_t>(buildings_.size()));
-  flat_.append(tile.flat, static_cast<std::uint32_t>(buildings_.size()));
-  detail_.append(tile.detail, static_cast<std::uint32_t>(buildings_.size()));
+  scene_.append(std::move(tile.scene), static_cast<std::uint32_t>(buildings_.size()));
+  flat_.append(std::move(tile.flat), static_cast<std::uint32_t>(buildings_.size()));
+  detail_.append(std::move(tile.detail), static_cast<std::uint32_t>(buildings_.size()));
   buildings_.insert(buildings_.end(), tile.buildings.begin(), tile.buildings.end());
 }
 
@@ -416,9 +417,9 @@ std::vector<outputs::ReportPicture> Pictures::shoot(int workers, std::string_vie
     shots.push_back(std::move(shot));
   };
   add(core, {view.azimuth, kElevation}, kFieldOfView, kWidth, kHeight, fmt::format("Seen from the {}.", view.from));
-  add(core, {view.azimuth + 180, kElevation}, kFieldOfView, 960, 600, fmt::format("The same from the {}.", view.to));
+  add(core, {view.azimuth + 180, kElevation}, kFieldOfView, kPairWidth, kPairHeight, fmt::format("The same from the {}.", view.to));
   std::vector<Point3> near = points_near(scene_, plan_.spot, kDetailReach);
-  add(near.empty() ? core : near, {view.azimuth, 27}, 40, 960, 600, "Where houses stand densest.");
+  add(near.empty() ? core : near, {view.azimuth, 27}, 40, kPairWidth, kPairHeight, "Where houses stand densest.");
 
   // Bodies alone throw shadows and take light of the sky away, but for those of the last picture.
   picture::Lighting lighting(scene_, shots.front().options), near_by(lighting);
