@@ -19,6 +19,11 @@ find_package(LibXml2 REQUIRED)
 # Optional: an allocator for the program alone (pipeline/cli/CMakeLists.txt). The archive for position-independent programs.
 find_library(JEMALLOC_LIBRARY libjemalloc_pic.a)
 find_package(ZLIB REQUIRED)
+# Debian 12's package has no CMake config.
+find_path(LIBDEFLATE_INCLUDE_DIR libdeflate.h REQUIRED)
+find_library(LIBDEFLATE_LIBRARY deflate REQUIRED)
+add_library(libdeflate::libdeflate UNKNOWN IMPORTED)
+set_target_properties(libdeflate::libdeflate PROPERTIES IMPORTED_LOCATION ${LIBDEFLATE_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${LIBDEFLATE_INCLUDE_DIR})
 find_package(PNG REQUIRED)
 find_package(Freetype REQUIRED)
 find_package(TinyGLTF CONFIG REQUIRED)

@@ -72,8 +72,8 @@ blockrand_compile_together(grammar  # styles/grammar
   shapes/roofs.cpp shapes/scope_operations.cpp shapes/shape_envelope.cpp shapes/shape_materials.cpp
   shapes/tag_operations.cpp shapes/uv_operations.cpp)
 blockrand_compile_together(picture  # pipeline/picture
-  building_plan.cpp camera.cpp depth_map.cpp light.cpp palette.cpp plan.cpp png.cpp render.cpp scene.cpp
-  view.cpp)
+  building_plan.cpp camera.cpp depth_map.cpp lighting.cpp palette.cpp plan.cpp png.cpp render.cpp scene.cpp
+  sky_field.cpp view.cpp)
 blockrand_compile_together(footprints  # pipeline/footprints
   area.cpp footprint_store.cpp load.cpp repair_extract.cpp roof_lines.cpp terrace_rows.cpp)
 blockrand_compile_together(repair  # pipeline/footprints/repair

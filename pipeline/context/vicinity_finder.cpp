@@ -2,14 +2,19 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "pipeline/context/wall_segments.h"
 
 namespace blockrand::context {
 
 VicinityFinder::VicinityFinder(const model::Extract& extract, const footprints::FootprintStore& footprints,
-                               const ContextExtract& context)
-    : extract_(extract), footprints_(footprints), context_(context), buildings_(footprints::index_of(footprints)) {
+                               const ContextExtract& context, std::shared_ptr<LabelledBuildings> labelled)
+    : extract_(extract),
+      footprints_(footprints),
+      context_(context),
+      labelled_(std::move(labelled)),
+      buildings_(footprints::index_of(footprints)) {
   std::vector<geometry::PlanBox> boxes;
   for (const context::NetworkLine& line : context.lines) boxes.push_back(geometry::box_of(line.points));
   lines_ = geometry::BoxIndex(std::move(boxes));
@@ -77,7 +82,12 @@ FoundVicinity VicinityFinder::vicinity_of(const geometry::PlanBox& box) const {
 
 void VicinityFinder::label_wall_segments(model::Region& region, std::span<const std::uint32_t> numbers) const {
   geometry::PlanBox box;
-  for (const std::uint32_t n : numbers) box.include(footprints_[n].box);
+  std::vector<std::size_t> unknown;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (labelled_ && labelled_->recall(numbers[i], region.buildings[i])) continue;
+    box.include(footprints_[numbers[i]].box);
+    unknown.push_back(i);
+  }
   if (box.empty()) return;
   const FoundVicinity found = vicinity_of(box);
   const context::VicinityIndex index({.footprints = found.footprints,
@@ -87,8 +97,38 @@ void VicinityFinder::label_wall_segments(model::Region& region, std::span<const 
                                       .passages = found.passages,
                                       .points = found.points,
                                       .addresses = found.addresses});
-  for (model::Building& building : region.buildings)
+  for (const std::size_t i : unknown) {
+    model::Building& building = region.buildings[i];
     context::label_wall_segments(building, index, context::address_street(extract_, building.tags));
+    if (labelled_) labelled_->keep(numbers[i], building);
+  }
+}
+
+bool LabelledBuildings::recall(std::uint32_t number, model::Building& building) const {
+  std::string_view bytes;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = packed_.find(number);
+    if (found == packed_.end()) return false;
+    bytes = found->second;  // it stays where it is
+  }
+  base::Unpacker in(bytes);
+  model::OsmId id;
+  model::Range tags;
+  in >> id >> tags;
+  if (id != building.osm || tags.first != building.tags.first || tags.count != building.tags.count) return false;
+  in >> building.edges >> building.situation >> building.trees;
+  return true;
+}
+
+void LabelledBuildings::keep(std::uint32_t number, const model::Building& building) {
+  base::Packer out;
+  out << building.osm << building.tags << building.edges << building.situation << building.trees;
+  out.bytes.shrink_to_fit();
+  const std::lock_guard lock(mutex_);
+  if (bytes_ + out.bytes.size() > kMostBytes) return;
+  bytes_ += out.bytes.size();
+  packed_.try_emplace(number, std::move(out.bytes));
 }
 
 }  // namespace blockrand::context

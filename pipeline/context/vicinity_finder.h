@@ -2,7 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <span>
+#include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "pipeline/base/pack.h"
@@ -28,11 +32,30 @@ struct FoundVicinity {
 /// Everything of it that does not number things in this run alone.
 void pack(const FoundVicinity& found, base::Packer& out);
 
-/// Read-only after construction, safe to share between threads; keeps references to what it is made of.
+/// What label_wall_segments() found of buildings, for those who ask again: buildings are labelled to be measured, then with their tile,
+/// and a few as neighbours of another. Safe to share between threads.
+class LabelledBuildings {
+ public:
+  /// What is found anew costs a millisecond a building and no memory.
+  static constexpr std::size_t kMostBytes = 32'000'000;
+
+  /// Puts in what is known of a building of the store. \returns whether it is
+  bool recall(std::uint32_t number, model::Building& building) const;
+  /// Keeps what is known, while there is room.
+  void keep(std::uint32_t number, const model::Building& building);
+
+ private:
+  mutable std::mutex mutex_;
+  std::unordered_map<std::uint32_t, std::string> packed_;
+  std::size_t bytes_ = 0;
+};
+
+/// Read-only after construction but for what it keeps, safe to share between threads; keeps references to what it is made of.
 class VicinityFinder {
  public:
+  /// \param labelled  shared with others of the same extract, footprints and context; null: nothing is kept
   VicinityFinder(const model::Extract& extract, const footprints::FootprintStore& footprints,
-                 const ContextExtract& context);
+                 const ContextExtract& context, std::shared_ptr<LabelledBuildings> labelled = nullptr);
 
   /// Labels the edges of a region's buildings (context::label_wall_segments) with everything around them in view.
   /// \param numbers  of the region's buildings in the store, in their order
@@ -50,6 +73,7 @@ class VicinityFinder {
   const model::Extract& extract_;
   const footprints::FootprintStore& footprints_;
   const ContextExtract& context_;
+  std::shared_ptr<LabelledBuildings> labelled_;  ///< null: everything is found anew
   geometry::BoxIndex buildings_, lines_, passages_, points_, blocks_, courtyards_;
 };
 

@@ -3,10 +3,12 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <cassert>
+#include <cstdint>
 #include <limits>
 #include <new>
 #include <stdexcept>
+
+#include "pipeline/base/deflate.h"
 
 namespace blockrand::outputs {
 
@@ -31,36 +33,20 @@ std::string latin(std::string_view text) {
 }  // namespace
 
 std::string gzip(std::string_view bytes, int level, std::string_view comment) {
-  assert(level >= 1 && level <= 9);
-  z_stream stream{};
-  constexpr int kGzipHeader = 16;
-  if (deflateInit2(&stream, level, Z_DEFLATED, MAX_WBITS + kGzipHeader, 8, Z_DEFAULT_STRATEGY) != Z_OK)
-    throw std::bad_alloc();
-  gz_header header{};
-  header.os = 255;  // "unknown": zlib's own default depends on the machine it was built for
-  std::string said = latin(comment);
-  if (!said.empty()) header.comment = reinterpret_cast<Bytef*>(said.data());
-  deflateSetHeader(&stream, &header);
-
-  std::string out(deflateBound(&stream, static_cast<uLong>(bytes.size())), '\0');
-  std::size_t consumed = 0, produced = 0;
-  int status = Z_OK;
-  while (status == Z_OK || status == Z_BUF_ERROR) {
-    constexpr std::size_t kMost = std::numeric_limits<uInt>::max();  // zlib counts in 32 bits
-    const std::size_t input = std::min(kMost, bytes.size() - consumed);
-    if (produced == out.size()) out.resize(out.size() + 4096);
-    const std::size_t room = std::min(kMost, out.size() - produced);
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + consumed));
-    stream.avail_in = static_cast<uInt>(input);
-    stream.next_out = reinterpret_cast<Bytef*>(out.data() + produced);
-    stream.avail_out = static_cast<uInt>(room);
-    status = deflate(&stream, consumed + input == bytes.size() ? Z_FINISH : Z_NO_FLUSH);
-    consumed += input - stream.avail_in;
-    produced += room - stream.avail_out;
+  // RFC 1952: deflate, flags, time 0, no hint, and a system that is not known.
+  const std::string said = latin(comment);
+  std::string out{"\x1f\x8b\x08\0\0\0\0\0\0\xff", 10};
+  if (!said.empty()) {
+    constexpr char kHasComment = 16;
+    out[3] = kHasComment;
+    out.append(said.c_str(), said.size() + 1);
   }
-  deflateEnd(&stream);
-  assert(status == Z_STREAM_END);
-  out.resize(produced);
+  out += base::deflated(bytes, level, base::DeflateFormat::raw);
+  const auto append_number = [&](std::uint32_t value) {
+    for (int i = 0; i < 4; ++i) out += static_cast<char>(value >> (8 * i) & 0xff);
+  };
+  append_number(base::crc32_of(bytes));
+  append_number(static_cast<std::uint32_t>(bytes.size()));  // modulo 2^32, as the format has it
   return out;
 }
 

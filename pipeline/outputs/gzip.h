@@ -7,10 +7,10 @@
 namespace blockrand::outputs {
 
 /// `bytes` as one gzip member: no file name, time 0, unknown operating system, so that equal input gives equal output
-/// (with the same zlib).
-/// \param level    1 (fast) to 9 (small)
+/// (with the same libdeflate).
+/// \param level    1 (fast) to 12 (small)
 /// \param comment  for the header (RFC 1952, in ISO 8859-1: other letters become '?'); empty: none
-/// \throws std::bad_alloc when zlib cannot allocate
+/// \throws std::bad_alloc there is no memory
 std::string gzip(std::string_view bytes, int level = 6, std::string_view comment = {});
 
 /// The content of a gzip file of one member. \throws std::runtime_error when it is damaged or cut off

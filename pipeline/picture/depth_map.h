@@ -11,11 +11,10 @@ namespace blockrand::picture {
 /// The scene in parallel projection along a light's rays.
 class DepthMap {
  public:
-  explicit DepthMap(int size) : size_(size), depth_(static_cast<std::size_t>(size) * static_cast<std::size_t>(size)) {}
-
   /// \param to_light  unit vector towards the light
-  /// \param receivers  box (scene's local coordinates) of what will ask; what stands outside its shadow column is left out
-  void draw(const Scene& scene, Point3 to_light, const Box& receivers);
+  /// \param box       scene's local coordinates: what it covers, seen along the light, is what the map covers
+  /// \param size      cells along a side
+  DepthMap(const Scene& scene, Point3 to_light, const Box& box, int size);
 
   /// Side of a map cell in metres.
   double cell() const { return cell_; }
@@ -25,28 +24,24 @@ class DepthMap {
   /// Column, row and height towards the light of a point in the scene's local coordinates.
   Vector locate(float x, float y, float z) const {
     return {column_[0] * x + column_[1] * y + column_[2] * z + column_[3],
-            row_[0] * x + row_[1] * y + row_[2] * z + row_[3], height_[0] * x + height_[1] * y + height_[2] * z};
+            row_[0] * x + row_[1] * y + row_[2] * z + row_[3],
+            height_[0] * x + height_[1] * y + height_[2] * z + height_[3]};
   }
-  /// True where nothing stands between the light and the place. Outside the map all is lit.
-  bool lit(const Vector& place) const {
-    const int x = cell_of(place.x), y = cell_of(place.y);
-    return x < 0 || y < 0 || x >= size_ || y >= size_ || at(x, y) <= place.z;
+  /// The map knows what stands between the light and the place.
+  bool covers(const Vector& place) const {
+    return place.x >= 2 && place.y >= 2 && place.x < static_cast<float>(size_ - 2) &&
+           place.y < static_cast<float>(size_ - 2);
   }
-  /// Share of the light that arrives, in [0, 1]: a tent-shaped mean over 3 x 3 cells.
+  /// Share of the light that arrives at a place that the map covers, in [0, 1]: a tent-shaped mean over 3 x 3 cells.
   float soft(const Vector& place) const;
 
  private:
-  static int cell_of(float v) {
-    const int i = static_cast<int>(v);
-    return v < 0 ? i - 1 : i;
-  }
-  float at(int x, int y) const {
-    return depth_[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(x)];
-  }
   int size_;
-  std::vector<float> depth_;  ///< height towards the light of the highest surface
+  /// Height towards the light of the highest surface, in steps; 0: there is none. Two bytes hold any scene to a few millimetres, and
+  /// half as many bytes are twice as near.
+  std::vector<std::uint16_t> depth_;
   double cell_ = 1;
-  float column_[4] = {}, row_[4] = {}, height_[3] = {};
+  float column_[4] = {}, row_[4] = {}, height_[4] = {};
 };
 
 }  // namespace blockrand::picture

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/model/colour.h"
+
 namespace blockrand::picture {
 
 /// 8-bit sRGB, rows from the top, three bytes a pixel.
@@ -18,7 +20,7 @@ struct Image {
   friend bool operator==(const Image&, const Image&) = default;
 };
 
-/// The picture as a PNG file: 8-bit RGB marked as sRGB, no time chunk, the same bytes each time (with the same zlib).
+/// The picture as a PNG file: 8-bit RGB marked as sRGB, no time chunk, the same bytes each time (with the same libdeflate).
 /// \throws std::runtime_error  the image has no pixels, or its buffer does not fit its size
 std::string png(const Image& image);
 
@@ -33,5 +35,10 @@ Image read_png(std::string_view bytes);
 
 /// The pixels of an image from a column and row on; what lies beyond it is left out. May be empty.
 Image cut(const Image& image, int column, int row, int width, int height);
+
+/// An image of one colour.
+Image blank(int width, int height, model::Colour colour);
+/// Puts a picture on another, its upper left corner at a column and a row; what lies beyond is left out.
+void put(Image& on, const Image& picture, int column, int row);
 
 }  // namespace blockrand::picture

@@ -110,10 +110,15 @@ Mask grown(const Mask& from, double reach) {
       if (share > 0) steps.push_back({x, y, static_cast<int>(std::min(1.0, share) * 255 + 0.5)});
     }
   Mask to = from;  // which leaves room for it
+  // From there nothing outside is nearest.
+  const auto surrounded = [&](int x, int y) {
+    return x > 0 && y > 0 && x + 1 < from.width && y + 1 < from.height && from.row(y)[x - 1] == 255 &&
+           from.row(y)[x + 1] == 255 && from.row(y - 1)[x] == 255 && from.row(y + 1)[x] == 255;
+  };
   for (int y = 0; y < from.height; ++y)
     for (int x = 0; x < from.width; ++x) {
       const int covered = from.row(y)[x];
-      if (covered == 0) continue;
+      if (covered == 0 || (covered == 255 && surrounded(x, y))) continue;
       for (const Step& s : steps) {
         const int u = x + s.x, v = y + s.y;
         if (u < 0 || v < 0 || u >= to.width || v >= to.height) continue;

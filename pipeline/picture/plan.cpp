@@ -38,12 +38,11 @@ std::vector<Point2> directions() {
 /// the coverage (the accumulation buffer of font rasterisers).
 class Coverage {
  public:
-  Coverage(int left, int top, int right, int bottom)
-      : left_(left),
-        top_(top),
-        width_(right - left),
-        height_(bottom - top),
-        change_(static_cast<std::size_t>(width_ + 2) * static_cast<std::size_t>(height_), 0.0) {}
+  /// \param change  its memory, which may be that of another before
+  Coverage(int left, int top, int right, int bottom, std::vector<double>& change)
+      : left_(left), top_(top), width_(right - left), height_(bottom - top), change_(change) {
+    change_.assign(static_cast<std::size_t>(width_ + 2) * static_cast<std::size_t>(height_), 0.0);
+  }
 
   void edge(Point2 a, Point2 b) {
     a = {a.x - left_, a.y - top_};
@@ -101,7 +100,7 @@ class Coverage {
   }
 
   int left_, top_, width_, height_;
-  std::vector<double> change_;
+  std::vector<double>& change_;
 };
 
 std::uint8_t mixed(std::uint8_t below, std::uint8_t above, double share) {
@@ -110,49 +109,67 @@ std::uint8_t mixed(std::uint8_t below, std::uint8_t above, double share) {
 
 }  // namespace
 
-Plan::Plan(const PlanBox& box, double pixels_per_metre, Colour paper) : box_(box), scale_(pixels_per_metre) {
-  const double width = std::ceil(box.width() * scale_ - 1e-6), height = std::ceil(box.height() * scale_ - 1e-6);
+namespace {
+
+/// Of no pixels yet.
+Image sized(const PlanBox& box, double scale) {
+  const double width = std::ceil(box.width() * scale - 1e-6), height = std::ceil(box.height() * scale - 1e-6);
   if (!(width >= 1) || !(height >= 1) || !(width <= kLongestSide) || !(height <= kLongestSide))
     throw std::invalid_argument("a plan of no size, or of more than 8192 pixels");
-  image_.width = static_cast<int>(width);
-  image_.height = static_cast<int>(height);
-  image_.rgb.resize(static_cast<std::size_t>(image_.width) * static_cast<std::size_t>(image_.height) * 3);
-  for (std::size_t i = 0; i < image_.rgb.size(); i += 3) {
-    image_.rgb[i] = paper.r;
-    image_.rgb[i + 1] = paper.g;
-    image_.rgb[i + 2] = paper.b;
-  }
+  return {static_cast<int>(width), static_cast<int>(height), {}};
 }
 
-Plan::Plan(const PlanBox& box, double pixels_per_metre, Image under) : Plan(box, pixels_per_metre) {
-  if (under.width != image_.width || under.height != image_.height || under.rgb.size() != image_.rgb.size())
+}  // namespace
+
+Plan::Plan(const PlanBox& box, double pixels_per_metre, Colour paper)
+    : box_(box), scale_(pixels_per_metre), image_(sized(box, pixels_per_metre)) {
+  image_ = blank(image_.width, image_.height, paper);
+}
+
+Plan::Plan(const PlanBox& box, double pixels_per_metre, Image under)
+    : box_(box), scale_(pixels_per_metre), image_(sized(box, pixels_per_metre)) {
+  if (under.width != image_.width || under.height != image_.height ||
+      under.rgb.size() != static_cast<std::size_t>(under.width) * static_cast<std::size_t>(under.height) * 3)
     throw std::invalid_argument("a picture of another size than the plan");
   image_ = std::move(under);
 }
 
-void Plan::cover(const std::vector<std::vector<Point2>>& contours, Colour colour, double opacity) {
+bool Plan::misses(std::span<const Point2> points, double margin) const {
+  double west = 1e300, south = 1e300, east = -1e300, north = -1e300;
+  for (const Point2 p : points)
+    west = std::min(west, p.x), east = std::max(east, p.x), south = std::min(south, p.y), north = std::max(north, p.y);
+  return west - margin > box_.max_x || east + margin < box_.min_x || south - margin > box_.max_y ||
+         north + margin < box_.min_y;
+}
+
+void Plan::cover(Contours& contours, Colour colour, double opacity) {
   double min_x = 1e9, min_y = 1e9, max_x = -1e9, max_y = -1e9;
-  std::vector<std::vector<Point2>> pixels(contours.size());
-  for (std::size_t c = 0; c < contours.size(); ++c)
-    for (const Point2 p : contours[c]) {
-      const Point2 q{(p.x - box_.min_x) * scale_, (box_.max_y - p.y) * scale_};
-      min_x = std::min(min_x, q.x), max_x = std::max(max_x, q.x);
-      min_y = std::min(min_y, q.y), max_y = std::max(max_y, q.y);
-      pixels[c].push_back(q);
-    }
+  for (Point2& p : contours.points) {
+    p = pixel_of(p);
+    min_x = std::min(min_x, p.x), max_x = std::max(max_x, p.x);
+    min_y = std::min(min_y, p.y), max_y = std::max(max_y, p.y);
+  }
   const auto whole = [](double v, int most) { return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(most))); };
   const int left = whole(std::floor(min_x), image_.width), right = whole(std::ceil(max_x), image_.width);
   const int top = whole(std::floor(min_y), image_.height), bottom = whole(std::ceil(max_y), image_.height);
   if (left >= right || top >= bottom) return;
-  Coverage coverage(left, top, right, bottom);
-  for (const auto& contour : pixels)
-    for (std::size_t i = 0; i < contour.size(); ++i) coverage.edge(contour[i], contour[(i + 1) % contour.size()]);
+  Coverage coverage(left, top, right, bottom, change_);
+  std::size_t begin = 0;
+  for (const std::size_t end : contours.ends) {
+    for (std::size_t i = begin; i < end; ++i)
+      coverage.edge(contours.points[i], contours.points[i + 1 == end ? begin : i + 1]);
+    begin = end;
+  }
   coverage.for_each([&](int x, int y, double covered) {
     std::uint8_t* const rgb =
         &image_
              .rgb[(static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x)) *
                   3];
     const double share = covered * opacity;
+    if (share >= 1) {
+      rgb[0] = colour.r, rgb[1] = colour.g, rgb[2] = colour.b;
+      return;
+    }
     rgb[0] = mixed(rgb[0], colour.r, share);
     rgb[1] = mixed(rgb[1], colour.g, share);
     rgb[2] = mixed(rgb[2], colour.b, share);
@@ -160,18 +177,25 @@ void Plan::cover(const std::vector<std::vector<Point2>>& contours, Colour colour
 }
 
 void Plan::fill(const model::Polygon& polygon, Colour colour, double opacity) {
-  std::vector<std::vector<Point2>> contours{polygon.outer.points};
-  for (const model::Ring& hole : polygon.holes) contours.push_back(hole.points);
+  if (misses(polygon.outer.points, 0)) return;
+  Contours& contours = emptied();
+  const auto add = [&](const model::Ring& ring) {
+    contours.points.insert(contours.points.end(), ring.points.begin(), ring.points.end());
+    contours.end();
+  };
+  add(polygon.outer);
+  for (const model::Ring& hole : polygon.holes) add(hole);
   cover(contours, colour, std::clamp(opacity, 0.0, 1.0));
 }
 
 void Plan::stroke(std::span<const Point2> points, double width, Colour colour, bool closed) {
   static const std::vector<Point2> kDirections = directions();
   const double half = width / 2;
-  std::vector<std::vector<Point2>> contours;
+  if (misses(points, half)) return;
+  Contours& contours = emptied();
   for (const Point2 p : points) {
-    std::vector<Point2>& disc = contours.emplace_back();
-    for (const Point2 d : kDirections) disc.push_back({p.x + d.x * half, p.y + d.y * half});
+    for (const Point2 d : kDirections) contours.points.push_back({p.x + d.x * half, p.y + d.y * half});
+    contours.end();
   }
   const std::size_t pieces = points.size() - (closed ? 0 : 1);
   for (std::size_t i = 0; points.size() > 1 && i < pieces; ++i) {
@@ -179,8 +203,10 @@ void Plan::stroke(std::span<const Point2> points, double width, Colour colour, b
     const double dx = b.x - a.x, dy = b.y - a.y, length = std::sqrt(dx * dx + dy * dy);
     if (!(length > 0)) continue;
     const Point2 n{-dy / length * half, dx / length * half};  // to the left
-    contours.push_back(
-        {{a.x - n.x, a.y - n.y}, {b.x - n.x, b.y - n.y}, {b.x + n.x, b.y + n.y}, {a.x + n.x, a.y + n.y}});
+    for (const Point2 p : {Point2{a.x - n.x, a.y - n.y}, Point2{b.x - n.x, b.y - n.y}, Point2{b.x + n.x, b.y + n.y},
+                           Point2{a.x + n.x, a.y + n.y}})
+      contours.points.push_back(p);
+    contours.end();
   }
   cover(contours, colour, 1);
 }

@@ -22,8 +22,7 @@ struct PlanBox {
 /// A sheet of paper that things are drawn on, one over the other.
 ///
 /// A pixel's colour is mixed by how much of it is covered, exactly but for lines that overlap themselves. The same calls
-/// give the same bytes on every x86-64. Memory: 3 bytes a pixel, and 8 bytes for each pixel of the box of what is drawn,
-/// while it is drawn.
+/// give the same bytes on every x86-64. Memory: 3 bytes a pixel, and 8 bytes for each pixel of the largest box of what is drawn.
 class Plan {
  public:
   /// \param pixels_per_metre  the picture is as large as the box needs
@@ -55,11 +54,27 @@ class Plan {
   Image& image() { return image_; }  ///< to be written on
 
  private:
-  void cover(const std::vector<std::vector<model::Point2>>& contours, model::Colour colour, double opacity);
+  /// Closed lines, one after the other.
+  struct Contours {
+    std::vector<model::Point2> points;  ///< m
+    std::vector<std::size_t> ends;
+    void end() { ends.push_back(points.size()); }
+  };
+  Contours& emptied() {
+    contours_.points.clear();
+    contours_.ends.clear();
+    return contours_;
+  }
+  /// Nothing of what is within `margin` metres of these points is on the sheet.
+  bool misses(std::span<const model::Point2> points, double margin) const;
+  /// The contours are in pixels afterwards.
+  void cover(Contours& contours, model::Colour colour, double opacity);
 
   PlanBox box_;
   double scale_;
   Image image_;
+  Contours contours_;           ///< of what is drawn, kept for its memory
+  std::vector<double> change_;  ///< likewise
 };
 
 /// The largest scale, pixels per metre, at which no side of the picture is longer than `pixels`.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <iterator>
+#include <utility>
 
 #include "pipeline/model/vector.h"
 
@@ -28,83 +29,146 @@ Scene::Vector Scene::local(Point3 p) const {
           static_cast<float>(p.z - origin_.z)};
 }
 
-void Scene::push(const std::array<Point3, 3>& corners, const std::array<Colour, 3>& colours, std::uint32_t object,
-                 bool closed) {
+namespace {
+
+/// Cosine between normals, and m between planes, up to which triangles are one plane face.
+constexpr double kOnePlane = 0.99999, kOnePlaneGap = 0.001;
+
+}  // namespace
+
+void Scene::push(const std::array<Point3, 3>& corners, Colour colour, std::uint32_t object, bool closed) {
   const Point3 normal = unit(cross(corners[1] - corners[0], corners[2] - corners[0]));
   if (!(dot(normal, normal) > 0)) return;  // also what is not a number
-  Triangle t;
-  for (std::size_t i = 0; i < 3; ++i) t.corners[i] = local(corners[i]);
-  t.normal = {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)};
-  t.colours = colours;
-  t.closed = closed;
-  t.blended = colours[0] != colours[1] || colours[1] != colours[2];
-  t.object = object;
-  triangles_.push_back(t);
+  const std::array<Vector, 3> own{local(corners[0]), local(corners[1]), local(corners[2])};
+  const auto goes_on = [&] {
+    if (faces_.empty() || triangles_.empty()) return false;
+    const Face& last = faces_.back();
+    if (last.object != object || last.colour != colour || last.closed != closed || last.blend != kNoBlend) return false;
+    const Point3 n{last.normal.x, last.normal.y, last.normal.z};
+    if (!(dot(n, normal) > kOnePlane)) return false;
+    const Vector& v = triangles_.back().corners[0];
+    const double gap = n.x * (own[0].x - v.x) + n.y * (own[0].y - v.y) + n.z * (own[0].z - v.z);
+    return gap < kOnePlaneGap && gap > -kOnePlaneGap;
+  };
+  if (!goes_on())
+    faces_.push_back({.normal = {static_cast<float>(normal.x), static_cast<float>(normal.y),
+                                 static_cast<float>(normal.z)},
+                      .colour = colour,
+                      .closed = closed,
+                      .object = object,
+                      .blend = kNoBlend});
+  triangles_.push_back({own, static_cast<std::uint32_t>(faces_.size() - 1)});
+}
+
+void Scene::push_face(const model::Solid& solid, const model::SolidTriangles& triangles, std::size_t f, Point3 offset,
+                      Colour colour, std::uint32_t object) {
+  // Slivers have normals that are noise: larger triangles count more.
+  Point3 sum;
+  const std::size_t first = triangles_.size();
+  for (std::uint32_t t = triangles.first[f]; t < triangles.first[f + 1]; ++t) {
+    const auto& c = triangles.triangles[t];
+    const Point3 a = solid.vertices[c[0]] + offset, b = solid.vertices[c[1]] + offset, d = solid.vertices[c[2]] + offset;
+    const Point3 area = cross(b - a, d - a);
+    if (!(dot(area, area) > 0)) continue;
+    sum = sum + area;
+    triangles_.push_back({{local(a), local(b), local(d)}, static_cast<std::uint32_t>(faces_.size())});
+  }
+  if (triangles_.size() == first) return;
+  const Point3 normal = unit(sum);
+  faces_.push_back(
+      {.normal = {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)},
+       .colour = colour,
+       .closed = true,
+       .object = object,
+       .blend = kNoBlend});
 }
 
 void Scene::add(const model::Solid& solid, const model::SolidTriangles& triangles, std::uint32_t object,
                 Point3 offset) {
   assert(solid.empty() || triangles.first.size() == solid.faces.size() + 1);
-  for (std::size_t f = 0; f < solid.faces.size(); ++f) {
-    const Colour c = solid.faces[f].colour;
-    for (std::uint32_t t = triangles.first[f]; t < triangles.first[f + 1]; ++t) {
-      const auto& corners = triangles.triangles[t];
-      push({solid.vertices[corners[0]] + offset, solid.vertices[corners[1]] + offset,
-            solid.vertices[corners[2]] + offset},
-           {c, c, c}, object, true);
-    }
-  }
+  for (std::size_t f = 0; f < solid.faces.size(); ++f)
+    push_face(solid, triangles, f, offset, solid.faces[f].colour, object);
 }
 
 void Scene::add(const model::Solid& solid, const model::SolidTriangles& triangles, std::uint32_t object, Point3 offset,
                 Colour colour) {
-  const std::size_t first = triangles_.size();
-  add(solid, triangles, object, offset);
-  for (std::size_t i = first; i < triangles_.size(); ++i) triangles_[i].colours = {colour, colour, colour};
+  for (std::size_t f = 0; f < solid.faces.size(); ++f) push_face(solid, triangles, f, offset, colour, object);
 }
 
 void Scene::add_without(const model::Solid& solid, const model::SolidTriangles& triangles,
                         const std::vector<bool>& hidden, std::uint32_t object) {
-  for (std::size_t f = 0; f < solid.faces.size(); ++f) {
-    if (f < hidden.size() && hidden[f]) continue;
-    for (std::uint32_t t = triangles.first[f]; t < triangles.first[f + 1]; ++t) {
-      const auto& c = triangles.triangles[t];
-      add_outside({solid.vertices[c[0]], solid.vertices[c[1]], solid.vertices[c[2]]}, solid.faces[f].colour, object);
-    }
-  }
+  for (std::size_t f = 0; f < solid.faces.size(); ++f)
+    if (f >= hidden.size() || !hidden[f]) push_face(solid, triangles, f, {}, solid.faces[f].colour, object);
 }
 
 void Scene::add_outside(const std::array<Point3, 3>& corners, Colour colour, std::uint32_t object) {
-  push(corners, {colour, colour, colour}, object, true);
+  push(corners, colour, object, true);
 }
 
 void Scene::add_triangle(const std::array<Point3, 3>& corners, Colour colour, std::uint32_t object) {
-  push(corners, {colour, colour, colour}, object, false);
+  push(corners, colour, object, false);
 }
 
 void Scene::add_blended_triangle(const std::array<Point3, 3>& corners, const std::array<Colour, 3>& colours,
                                  std::uint32_t object) {
-  push(corners, colours, object, false);
+  const std::size_t before = triangles_.size();
+  push(corners, colours[0], object, false);
+  if (triangles_.size() == before || (colours[0] == colours[1] && colours[1] == colours[2])) return;
+  // A face of its own, whether or not it goes on in the last one's plane.
+  if (before > 0 && triangles_[before - 1].face == triangles_.back().face) {
+    faces_.push_back(faces_.back());
+    ++triangles_.back().face;
+  }
+  faces_.back().blend = static_cast<std::uint32_t>(blends_.size());
+  blends_.push_back({triangles_.back().corners, colours});
 }
 
 void Scene::set_ground(double z, Colour colour) { ground_ = Ground{z - origin_.z, colour}; }
 
 void Scene::append(const Scene& other, std::uint32_t first_object) {
   assert(origin_ == other.origin_);
-  const std::size_t first = triangles_.size();
-  triangles_.reserve(first +
-                     other.triangles_.size());  // a scene of detail has 72 bytes a triangle, and many: no room to spare
-  triangles_.insert(triangles_.end(), other.triangles_.begin(), other.triangles_.end());
-  for (std::size_t i = first; i < triangles_.size(); ++i) triangles_[i].object += first_object;
+  // No room to spare: a scene of detail has many triangles.
+  triangles_.reserve(triangles_.size() + other.triangles_.size());
+  faces_.reserve(faces_.size() + other.faces_.size());
+  const auto first_face = static_cast<std::uint32_t>(faces_.size()),
+             first_blend = static_cast<std::uint32_t>(blends_.size());
+  for (const Triangle& t : other.triangles_) triangles_.push_back({t.corners, t.face + first_face});
+  for (Face face : other.faces_) {
+    face.object += first_object;
+    if (face.blend != kNoBlend) face.blend += first_blend;
+    faces_.push_back(face);
+  }
+  blends_.insert(blends_.end(), other.blends_.begin(), other.blends_.end());
+  if (!ground_) ground_ = other.ground_;
+}
+
+void Scene::append(Scene&& other, std::uint32_t first_object) {
+  if (!empty()) return append(std::as_const(other), first_object);
+  assert(origin_ == other.origin_);
+  triangles_ = std::move(other.triangles_);
+  faces_ = std::move(other.faces_);
+  blends_ = std::move(other.blends_);
+  for (Face& face : faces_) face.object += first_object;
   if (!ground_) ground_ = other.ground_;
 }
 
 Scene Scene::without(const std::vector<bool>& hidden) const {
   Scene out(origin_);
   out.ground_ = ground_;
-  std::ranges::copy_if(triangles_, std::back_inserter(out.triangles_),
-                       [&](const Triangle& t) { return t.object >= hidden.size() || !hidden[t.object]; });
+  out.faces_ = faces_;
+  out.blends_ = blends_;
+  std::ranges::copy_if(triangles_, std::back_inserter(out.triangles_), [&](const Triangle& t) {
+    const std::uint32_t object = faces_[t.face].object;
+    return object >= hidden.size() || !hidden[object];
+  });
   return out;
+}
+
+void Scene::check() const {
+  for (const Triangle& t : triangles_)
+    if (t.face >= faces_.size()) throw base::UnpackError();
+  for (const Face& f : faces_)
+    if (f.blend != kNoBlend && f.blend >= blends_.size()) throw base::UnpackError();
 }
 
 Box Scene::bounds() const {

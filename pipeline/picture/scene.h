@@ -53,6 +53,10 @@ class Scene {
   void set_ground(double z, Colour colour);
   /// Everything of `other`, whose origin must be the same, its objects renumbered by adding `first_object`.
   void append(const Scene& other, std::uint32_t first_object = 0);
+  /// Likewise; where this is empty, the lists of `other` become its own.
+  void append(Scene&& other, std::uint32_t first_object = 0);
+  /// Room for so many triangles more.
+  void reserve(std::size_t triangles) { triangles_.reserve(triangles_.size() + triangles); }
   /// The same without some objects. \param hidden  by object; what lies behind its end stays
   Scene without(const std::vector<bool>& hidden) const;
 
@@ -69,29 +73,49 @@ class Scene {
   struct Vector {
     float x = 0, y = 0, z = 0;
   };
+  /// What the triangles of a plane piece of surface have in common.
+  struct Face {
+    Vector normal;  ///< unit, towards the side from which the corners run counter-clockwise
+    Colour colour;
+    bool closed = false;             ///< of a solid: never seen from behind
+    std::uint32_t object = 0;
+    std::uint32_t blend = kNoBlend;  ///< of a face whose corners differ in colour: into blends()
+  };
   struct Triangle {
     std::array<Vector, 3> corners;
-    Vector normal;  ///< unit, towards the side from which the corners run counter-clockwise
-    std::array<Colour, 3> colours;
-    bool closed = false;   ///< of a solid: never seen from behind
-    bool blended = false;  ///< its corners differ in colour
-    std::uint32_t object = 0;
+    std::uint32_t face = 0;  ///< into faces()
   };
+  /// A face of one triangle whose corners differ in colour.
+  struct Blend {
+    std::array<Vector, 3> corners;
+    std::array<Colour, 3> colours;
+  };
+  static constexpr std::uint32_t kNoBlend = 0xffffffff;
   struct Ground {
     double z = 0;  ///< relative to the origin
     Colour colour;
   };
   std::span<const Triangle> triangles() const { return triangles_; }
+  std::span<const Face> faces() const { return faces_; }
+  std::span<const Blend> blends() const { return blends_; }
   const std::optional<Ground>& ground() const { return ground_; }
 
  private:
   friend struct base::PackTraits<Scene>;
   Vector local(Point3 p) const;
-  void push(const std::array<Point3, 3>& corners, const std::array<Colour, 3>& colours, std::uint32_t object,
-            bool closed);
+  /// A triangle of its own, or of the last face where it goes on in its plane.
+  void push(const std::array<Point3, 3>& corners, Colour colour, std::uint32_t object, bool closed);
+  /// The triangles of a solid's face. \param t  number of the face
+  void push_face(const model::Solid& solid, const model::SolidTriangles& triangles, std::size_t t, Point3 offset,
+                 Colour colour, std::uint32_t object);
+
+  /// \throws base::UnpackError  a triangle has no face, or a face no blend
+  void check() const;
 
   Point3 origin_;
   std::vector<Triangle> triangles_;
+  std::vector<Face> faces_;
+  std::vector<Blend> blends_;
   std::optional<Ground> ground_;
 };
 
@@ -101,7 +125,10 @@ class Scene {
 template <>
 struct blockrand::base::PackTraits<blockrand::picture::Scene> {
   static void pack(Packer& out, const picture::Scene& scene) {
-    out << scene.origin_ << scene.triangles_ << scene.ground_;
+    out << scene.origin_ << scene.triangles_ << scene.faces_ << scene.blends_ << scene.ground_;
   }
-  static void unpack(Unpacker& in, picture::Scene& scene) { in >> scene.origin_ >> scene.triangles_ >> scene.ground_; }
+  static void unpack(Unpacker& in, picture::Scene& scene) {
+    in >> scene.origin_ >> scene.triangles_ >> scene.faces_ >> scene.blends_ >> scene.ground_;
+    scene.check();
+  }
 };

@@ -19,49 +19,55 @@ constexpr Colour kInk{30, 30, 30}, kSoftInk{90, 88, 84}, kLine{150, 147, 142};
 constexpr double kMargin = 0.018, kTitle = 0.036, kLeastTitle = 0.020, kText = 0.0185, kSmall = 0.0155;
 constexpr double kLineHeight = 1.32;  // em
 
-class Sheet {
+}  // namespace
+
+class Sheet::Layout {
  public:
-  Sheet(const Image& map, const SheetText& text)
-      : map_(map),
+  Layout(int map_width, int map_height, const SheetText& text)
+      : map_width_(map_width),
+        map_height_(map_height),
         text_(text),
         width_(std::max(kLeastSheet,
-                        map.width + 2 * static_cast<int>(std::ceil(map.width * kMargin / (1 - 2 * kMargin))))),
+                        map_width + 2 * static_cast<int>(std::ceil(map_width * kMargin / (1 - 2 * kMargin))))),
         margin_(width_ * kMargin),
         body_(width_ * kText),
         small_(width_ * kSmall) {
     lay_out();
   }
 
-  Image drawn(Colour paper) const {
-    Plan plan({0, 0, static_cast<double>(width_), height_}, 1, paper);
-    Image& image = plan.image();
-    const int left = (width_ - map_.width) / 2, top = static_cast<int>(map_top_);
-    for (int y = 0; y < map_.height; ++y)
-      std::copy_n(map_.pixel(0, y), static_cast<std::size_t>(map_.width) * 3,
-                  image.rgb.begin() + ((static_cast<std::ptrdiff_t>(top) + y) * image.width + left) * 3);
-    const double thin = std::max(1.0, width_ / 1500.0);
-    rectangle(plan, left - thin / 2, top - thin / 2, left + map_.width + thin / 2, top + map_.height + thin / 2, thin);
+  int width() const { return width_; }
+  int height() const { return static_cast<int>(height_); }
+  int map_left() const { return (width_ - map_width_) / 2; }
+  int map_top() const { return static_cast<int>(map_top_); }
 
-    letters_.write(image, {margin_, margin_ + title_size_ * kAscent}, title_, {.size = title_size_, .colour = kInk});
+  void draw(Image& rows, int first) const {
+    const int height = rows.height;
+    Plan plan({0, height_ - first - height, static_cast<double>(width_), height_ - first}, 1, std::move(rows));
+    Page page{plan, static_cast<double>(first)};
+    const int left = map_left(), top = map_top();
+    const double thin = std::max(1.0, width_ / 1500.0);
+    rectangle(page, left - thin / 2, top - thin / 2, left + map_width_ + thin / 2, top + map_height_ + thin / 2, thin);
+
+    write(page, {margin_, margin_ + title_size_ * kAscent}, title_, {.size = title_size_, .colour = kInk});
     double base = margin_ + title_size_ * kLineHeight + body_ * kAscent;
     for (const std::string& line : below_) {
-      letters_.write(image, {margin_, base}, line, {.size = body_, .colour = kSoftInk});
+      write(page, {margin_, base}, line, {.size = body_, .colour = kSoftInk});
       base += body_ * kLineHeight;
     }
-    draw_legend(plan, thin);
-    draw_scale_and_north(plan, thin);
+    draw_legend(page, thin);
+    draw_scale_and_north(page, thin);
 
     base = small_top_ + small_ * kAscent;
     for (const std::string& line : small_lines_) {
-      letters_.write(image, {margin_, base}, line, {.size = small_, .colour = kSoftInk});
+      write(page, {margin_, base}, line, {.size = small_, .colour = kSoftInk});
       base += small_ * kLineHeight;
     }
     if (!text_.generator.empty())
-      letters_.write(image,
-                     {width_ - margin_ - letters_.width(text_.generator, small_),
-                      base - (generator_beside_ ? small_ * kLineHeight : 0)},
-                     text_.generator, {.size = small_, .colour = kSoftInk});
-    return std::move(plan.image());
+      write(page,
+            {width_ - margin_ - letters_.width(text_.generator, small_),
+             base - (generator_beside_ ? small_ * kLineHeight : 0)},
+            text_.generator, {.size = small_, .colour = kSoftInk});
+    rows = std::move(plan.image());
   }
 
  private:
@@ -76,7 +82,7 @@ class Sheet {
         below_.push_back(letters_.fitted(line, body_, across));
     map_top_ = std::ceil(margin_ + title_size_ * kLineHeight +
                          static_cast<double>(below_.size()) * body_ * kLineHeight + margin_ * 0.6);
-    block_top_ = map_top_ + map_.height + margin_;
+    block_top_ = map_top_ + map_height_ + margin_;
 
     // Scale and north stand at the right; the legend fills what is left of them.
     right_width_ = 0;
@@ -111,19 +117,29 @@ class Sheet {
                   margin_ * 0.8);
   }
 
+  /// Some rows of the sheet.
+  struct Page {
+    Plan& plan;
+    double first;  ///< px
+  };
+  void write(Page& page, Point2 at, std::string_view text, const TextStyle& style) const {
+    const double y = at.y - page.first;
+    if (y < -style.size || y > page.plan.image().height + style.size) return;
+    letters_.write(page.plan.image(), {at.x, y}, text, style);
+  }
   // Plans count upwards, sheets downwards.
   Point2 up(double x, double y) const { return {x, height_ - y}; }
-  void area(Plan& plan, std::initializer_list<Point2> corners, Colour colour) const {
+  void area(Page& page, std::initializer_list<Point2> corners, Colour colour) const {
     model::Polygon p;
     p.outer.points = corners;
-    plan.fill(p, colour);
+    page.plan.fill(p, colour);
   }
-  void rectangle(Plan& plan, double x0, double y0, double x1, double y1, double thin) const {
+  void rectangle(Page& page, double x0, double y0, double x1, double y1, double thin) const {
     const Point2 ring[] = {up(x0, y0), up(x1, y0), up(x1, y1), up(x0, y1)};
-    plan.stroke(ring, thin, kLine, true);
+    page.plan.stroke(ring, thin, kLine, true);
   }
 
-  void draw_legend(Plan& plan, double thin) const {
+  void draw_legend(Page& page, double thin) const {
     for (std::size_t i = 0; i < text_.legend.size(); ++i) {
       const LegendEntry& e = text_.legend[i];
       const double x = margin_ + static_cast<double>(static_cast<int>(i) / rows_) * column_,
@@ -132,18 +148,18 @@ class Sheet {
                    middle = base - body_ * kCapitals / 2, right = x + body_ * 1.5;
       if (e.sign == LegendSign::area) {
         const double half = body_ * 0.42;
-        area(plan, {up(x, middle - half), up(right, middle - half), up(right, middle + half), up(x, middle + half)},
+        area(page, {up(x, middle - half), up(right, middle - half), up(right, middle + half), up(x, middle + half)},
              e.colour);
-        rectangle(plan, x, middle - half, right, middle + half, thin);
+        rectangle(page, x, middle - half, right, middle + half, thin);
       } else {
         const Point2 line[] = {up(x + body_ * 0.15, middle), up(right - body_ * 0.15, middle)};
-        plan.stroke(line, body_ * (e.sign == LegendSign::line ? 0.34 : 0.12), e.colour);
+        page.plan.stroke(line, body_ * (e.sign == LegendSign::line ? 0.34 : 0.12), e.colour);
       }
-      letters_.write(plan.image(), {right + body_ * 0.55, base}, e.words, {.size = body_, .colour = kInk});
+      write(page, {right + body_ * 0.55, base}, e.words, {.size = body_, .colour = kInk});
     }
   }
 
-  void draw_scale_and_north(Plan& plan, double thin) const {
+  void draw_scale_and_north(Page& page, double thin) const {
     const double right = width_ - margin_, left = right - right_width_;
     double y = block_top_;
     if (bar_ > 0) {
@@ -151,33 +167,33 @@ class Sheet {
       const double length = bar_ / text_.metres_per_pixel, high = body_ * 0.42, top = y + body_ * 1.25;
       for (int i = 0; i < 4; ++i) {
         const double x0 = left + length * i / 4, x1 = left + length * (i + 1) / 4;
-        area(plan, {up(x0, top), up(x1, top), up(x1, top + high), up(x0, top + high)},
+        area(page, {up(x0, top), up(x1, top), up(x1, top + high), up(x0, top + high)},
              i % 2 == 0 ? kInk : Colour{255, 255, 255});
       }
-      rectangle(plan, left, top, left + length, top + high, thin);
+      rectangle(page, left, top, left + length, top + high, thin);
       const std::string words = length_text(bar_);
-      letters_.write(plan.image(), {left, y + body_ * kAscent}, "0", {.size = body_, .colour = kInk});
-      letters_.write(plan.image(), {left + length - letters_.width(words, body_), y + body_ * kAscent}, words,
+      write(page, {left, y + body_ * kAscent}, "0", {.size = body_, .colour = kInk});
+      write(page, {left + length - letters_.width(words, body_), y + body_ * kAscent}, words,
                      {.size = body_, .colour = kInk});
       y += body_ * 2.2;
     }
     if (north_.empty()) return;
     double base = y + small_ * kAscent;
     for (const std::string& line : north_) {
-      letters_.write(plan.image(), {left, base}, line, {.size = small_, .colour = kSoftInk});
+      write(page, {left, base}, line, {.size = small_, .colour = kSoftInk});
       base += small_ * kLineHeight;
     }
     // An arrow that points up, half of it pale, with its letter on top.
     const double x = right - body_ * 0.8, top = block_top_ + body_ * 1.0, bottom = block_top_ + body_ * 3.6,
                  half = body_ * 0.62;
-    letters_.write(plan.image(), {x - letters_.width("N", body_) / 2, block_top_ + body_ * 0.75}, "N",
+    write(page, {x - letters_.width("N", body_) / 2, block_top_ + body_ * 0.75}, "N",
                    {.size = body_, .colour = kInk});
-    area(plan, {up(x, top), up(x - half, bottom), up(x, bottom - half * 0.8)}, kInk);
+    area(page, {up(x, top), up(x - half, bottom), up(x, bottom - half * 0.8)}, kInk);
     const Point2 other[] = {up(x, top), up(x + half, bottom), up(x, bottom - half * 0.8)};
-    plan.stroke(other, thin, kInk, true);
+    page.plan.stroke(other, thin, kInk, true);
   }
 
-  const Image& map_;
+  int map_width_, map_height_;  // px
   const SheetText& text_;
   Lettering letters_;
   int width_;
@@ -190,8 +206,21 @@ class Sheet {
   std::vector<std::string> below_, north_, small_lines_;
 };
 
-}  // namespace
+Sheet::Sheet(int map_width, int map_height, const SheetText& text)
+    : layout_(std::make_unique<Layout>(map_width, map_height, text)) {}
+Sheet::~Sheet() = default;
+int Sheet::width() const { return layout_->width(); }
+int Sheet::height() const { return layout_->height(); }
+int Sheet::map_left() const { return layout_->map_left(); }
+int Sheet::map_top() const { return layout_->map_top(); }
+void Sheet::draw(Image& rows, int first) const { layout_->draw(rows, first); }
 
-Image sheet(const Image& map, const SheetText& text, Colour paper) { return Sheet(map, text).drawn(paper); }
+Image sheet(const Image& map, const SheetText& text, Colour paper) {
+  const Sheet layout(map.width, map.height, text);
+  Image out = blank(layout.width(), layout.height(), paper);
+  put(out, map, layout.map_left(), layout.map_top());
+  layout.draw(out, 0);
+  return out;
+}
 
 }  // namespace blockrand::picture

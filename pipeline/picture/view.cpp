@@ -65,11 +65,6 @@ int View::clip(std::array<Point3, kMaxCorners>& corners, int count) const {
   return count;
 }
 
-Point3 View::direction(double x, double y) const {
-  if (!perspective_) return forward_;
-  return unit(forward_ + (right_ * ((x - cx_) / scale_) + up_ * ((cy_ - y) / scale_)));
-}
-
 View::Linear View::plane(Point3 normal, double offset) const {
   const double distance = offset - dot(normal, eye_);  // of the plane from the eye
   const double r = dot(normal, right_) / scale_, u = dot(normal, up_) / scale_, f = dot(normal, forward_);

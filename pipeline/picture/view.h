@@ -57,8 +57,6 @@ class View {
     if (!perspective_) return eye_ + (right_ * a + up_ * b) + (forward_ * -nearness);
     return eye_ + (forward_ + (right_ * a + up_ * b)) * (1 / nearness);
   }
-  /// Unit vector from the eye through a sample.
-  Point3 direction(double x, double y) const;
 
   /// The nearness of a plane {p: dot(normal, p) = offset} as a linear function of the sample.
   struct Linear {
@@ -82,14 +80,26 @@ class View {
   int width_ = 0, height_ = 0;
 };
 
-/// Calls `write(sample index, nearness)` for every sample whose centre lies in the triangle. Samples on an edge that two
-/// triangles share belong to one of them. Corners within +-2^15 of the grid.
+/// A part of the grid of samples: all columns, some rows.
+struct Rows {
+  int width = 0;
+  int first = 0, end = 0;
+};
+
+/// Calls `write(index, nearness)` for every sample of `rows` whose centre lies in the triangle; the first sample of the first row has
+/// index 0. Samples on an edge that two triangles share belong to one of them. Corners within +-2^15 of the grid.
 template <class Write>
-void fill(const Projected& a, Projected b, Projected c, int width, int height, Write&& write) {
+void fill(const Projected& a, Projected b, Projected c, const Rows& rows, Write&& write) {
   constexpr double kSteps = 256;
   const auto fixed = [](double v) { return static_cast<std::int64_t>(v * kSteps + (v < 0 ? -0.5 : 0.5)); };
   const std::int64_t ax = fixed(a.x), ay = fixed(a.y);
   std::int64_t bx = fixed(b.x), by = fixed(b.y), cx = fixed(c.x), cy = fixed(c.y);
+  // First and last row and column whose middle lies between the corners.
+  const std::int64_t first_row = std::max<std::int64_t>(rows.first, (std::min({ay, by, cy}) + 127) >> 8);
+  const std::int64_t last_row = std::min<std::int64_t>(rows.end - 1, (std::max({ay, by, cy}) - 128) >> 8);
+  const std::int64_t left = std::max<std::int64_t>(0, (std::min({ax, bx, cx}) + 127) >> 8);
+  const std::int64_t right = std::min<std::int64_t>(rows.width - 1, (std::max({ax, bx, cx}) - 128) >> 8);
+  if (first_row > last_row || left > right) return;
   std::int64_t area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
   if (area == 0) return;
   if (area < 0) {
@@ -98,13 +108,6 @@ void fill(const Projected& a, Projected b, Projected c, int width, int height, W
     std::swap(by, cy);
     area = -area;
   }
-  // First and last row whose middle lies between the corners.
-  const std::int64_t low = std::min({ay, by, cy}), high = std::max({ay, by, cy});
-  const std::int64_t first_row = std::max<std::int64_t>(0, (low + 127) >> 8);
-  const std::int64_t last_row = std::min<std::int64_t>(height - 1, (high - 128) >> 8);
-  const std::int64_t left = std::max<std::int64_t>(0, (std::min({ax, bx, cx}) + 127) >> 8);
-  const std::int64_t right = std::min<std::int64_t>(width - 1, (std::max({ax, bx, cx}) - 128) >> 8);
-  if (first_row > last_row || left > right) return;
 
   // Nearness over the grid. Slivers make steep planes: what leaves the corners' range is brought back.
   const double inverse = 1 / (static_cast<double>(area) / kSteps);
@@ -113,24 +116,40 @@ void fill(const Projected& a, Projected b, Projected c, int width, int height, W
   const double per_y = (c_up * static_cast<double>(bx - ax) - b_up * static_cast<double>(cx - ax)) * inverse;
   const double lowest = std::min({a.nearness, b.nearness, c.nearness});
   const double highest = std::max({a.nearness, b.nearness, c.nearness});
+  const double ax_in_samples = static_cast<double>(ax) / kSteps;
+  const auto put = [&](std::size_t index, std::int64_t x, double offset) {
+    const double n = offset + (static_cast<double>(x) + 0.5 - ax_in_samples) * per_x;
+    write(index, n < lowest ? lowest : n > highest ? highest : n);
+  };
 
-  // An edge p → q holds what is on its positive side: e = (qx - px) (y - py) - (qy - py) (x - px) >= bias.
+  // An edge p → q holds what is on its positive side: e = (qx - px) (y - py) - (qy - py) (x - px) >= bias. Along a row:
+  // e - bias = at - dy * 256 * x, for the sample in column x.
   struct Edge {
     std::int64_t dx, dy, x, y, bias;
+    std::int64_t at(std::int64_t my) const { return dx * (my - y) - dy * (128 - x) - bias; }
   };
   const auto edge = [](std::int64_t px, std::int64_t py, std::int64_t qx, std::int64_t qy) {
     const std::int64_t dx = qx - px, dy = qy - py;
     return Edge{dx, dy, px, py, dy < 0 || (dy == 0 && dx > 0) ? 0 : 1};
   };
   const Edge edges[3] = {edge(ax, ay, bx, by), edge(bx, by, cx, cy), edge(cx, cy, ax, ay)};
+  constexpr std::int64_t kNarrow = 12;  // samples: to ask each is cheaper than to divide
   const auto floor_divide = [](std::int64_t n, std::int64_t d) { return n >= 0 ? n / d : -((-n + d - 1) / d); };
   for (std::int64_t y = first_row; y <= last_row; ++y) {
     const std::int64_t my = y * 256 + 128;
+    const double offset = (static_cast<double>(my) - static_cast<double>(ay)) / kSteps * per_y + a.nearness;
+    const std::size_t row = static_cast<std::size_t>(y - rows.first) * static_cast<std::size_t>(rows.width);
+    if (right - left < kNarrow) {
+      const std::int64_t step0 = edges[0].dy * 256, step1 = edges[1].dy * 256, step2 = edges[2].dy * 256;
+      std::int64_t e0 = edges[0].at(my) - step0 * left, e1 = edges[1].at(my) - step1 * left,
+                   e2 = edges[2].at(my) - step2 * left;
+      for (std::int64_t x = left; x <= right; ++x, e0 -= step0, e1 -= step1, e2 -= step2)
+        if ((e0 | e1 | e2) >= 0) put(row + static_cast<std::size_t>(x), x, offset);
+      continue;
+    }
     std::int64_t from = left, to = right;
     for (const Edge& e : edges) {
-      // e(x) = at - dy * 256 * x, for the sample in column x.
-      const std::int64_t at = e.dx * (my - e.y) - e.dy * (128 - e.x) - e.bias;
-      const std::int64_t step = e.dy * 256;
+      const std::int64_t at = e.at(my), step = e.dy * 256;
       if (step == 0) {
         if (at < 0) to = -1;
       } else if (step > 0) {
@@ -139,20 +158,13 @@ void fill(const Projected& a, Projected b, Projected c, int width, int height, W
         from = std::max(from, -floor_divide(at, -step));
       }
     }
-    if (from > to) continue;
-    const double offset = (static_cast<double>(my) - static_cast<double>(ay)) / kSteps * per_y + a.nearness;
-    const double ax_in_samples = static_cast<double>(ax) / kSteps;
-    std::size_t index = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(from);
-    for (std::int64_t x = from; x <= to; ++x, ++index) {
-      const double n = offset + (static_cast<double>(x) + 0.5 - ax_in_samples) * per_x;
-      write(index, n < lowest ? lowest : n > highest ? highest : n);
-    }
+    for (std::int64_t x = from; x <= to; ++x) put(row + static_cast<std::size_t>(x), x, offset);
   }
 }
 
 /// Projects a triangle of the scene, clips it where needed and fills it.
 template <class Write>
-void draw(const View& view, const Scene::Triangle& t, Write&& write) {
+void draw(const View& view, const Scene::Triangle& t, const Rows& rows, Write&& write) {
   std::array<Point3, View::kMaxCorners> corners;
   for (std::size_t i = 0; i < 3; ++i) corners[i] = view.to_camera({t.corners[i].x, t.corners[i].y, t.corners[i].z});
   // Nearly all triangles are far from every plane that they could be clipped against.
@@ -165,7 +177,7 @@ void draw(const View& view, const Scene::Triangle& t, Write&& write) {
     inside = view.in_frame(p[i]);
   }
   if (inside) {
-    fill(p[0], p[1], p[2], view.width(), view.height(), write);
+    fill(p[0], p[1], p[2], rows, write);
     return;
   }
   const int count = view.clip(corners, 3);
@@ -174,7 +186,7 @@ void draw(const View& view, const Scene::Triangle& t, Write&& write) {
   Projected before = view.project(corners[1]);
   for (int i = 2; i < count; ++i) {
     const Projected next = view.project(corners[static_cast<std::size_t>(i)]);
-    fill(first, before, next, view.width(), view.height(), write);
+    fill(first, before, next, rows, write);
     before = next;
   }
 }

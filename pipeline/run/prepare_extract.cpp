@@ -118,8 +118,9 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
       for (std::uint32_t i = 0; i < shards[shard].seeds.size(); ++i) asked.push_back(repaired.first[shard] + i);
     needed = evidence::needed_for(asked, repaired.footprints, context, tables);
   }
+  auto labelled = std::make_shared<context::LabelledBuildings>();
   evidence::FactsExtract facts = evidence::facts_extract(extract, repaired.footprints, repaired.first, context,
-                                                         context::VicinityFinder(extract, repaired.footprints, context),
+                                                         context::VicinityFinder(extract, repaired.footprints, context, labelled),
                                                          workers, progress, memo, needed);
   evidence::TagFacts tags =
       evidence::tag_facts(extract, repaired.footprints, context, tables, located.projection, facts);
@@ -132,6 +133,7 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
           .kept = std::move(kept),
           .repaired = std::move(repaired),
           .context = std::move(context),
+          .labelled = std::move(labelled),
           .facts = std::move(facts),
           .tags = std::move(tags),
           .styles = std::move(styles)};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "pipeline/base/memo.h"
 #include "pipeline/base/progress.h"
 #include "pipeline/context/context_extract.h"
+#include "pipeline/context/vicinity_finder.h"
 #include "pipeline/evidence/building_facts.h"
 #include "pipeline/evidence/classify_extract.h"
 #include "pipeline/footprints/area.h"
@@ -51,6 +53,7 @@ struct PreparedExtract {
   repair::KeptNodes kept;
   footprints::RepairedExtract repaired;
   context::ContextExtract context;
+  std::shared_ptr<context::LabelledBuildings> labelled;  ///< what was found to measure them
   evidence::FactsExtract facts;
   evidence::TagFacts tags;
   evidence::StyleExtract styles;

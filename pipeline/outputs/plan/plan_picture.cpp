@@ -17,21 +17,25 @@
 #include "pipeline/picture/image.h"
 #include "pipeline/picture/labels.h"
 #include "pipeline/picture/lettering.h"
+#include "pipeline/picture/palette.h"
 #include "pipeline/picture/sheet.h"
 
 namespace blockrand::outputs {
 
 namespace {
 
-constexpr int kFilePixels = 3000;    // a side of the file: at kPlanReach a wall is two pixels wide
+constexpr int kFilePixels = 2600;    // a side of the file: at kPlanReach a wall is two pixels wide
 constexpr int kReportPixels = 1300;  // a side of the picture in the report
 constexpr double kTileExtent = 700;  // m: buildings of a tile of level 15 lie at most so far from its centre
-constexpr double kFinest = 8;        // pixels per metre: more shows nothing more
+constexpr double kFinest = 6;        // pixels per metre: more shows nothing more
 
 constexpr model::Colour kSheetPaper{255, 255, 255}, kNameInk{45, 42, 60};
 /// Names of streets: as high as fits between two rows of houses, within a share of the longer side of the map.
 constexpr double kNameHeight = 13;       // m an em
 constexpr int kPale = 220, kGrey = 200;  // brightness: buildings have 217
+/// Of the map in the report, of which the sheet has four times the pixels, when colours are chosen.
+constexpr std::uint32_t kSmallWeight = 4;
+constexpr int kSheetLevel = 5;  // of deflate
 constexpr double kLeastName = 0.0092, kLargestName = 0.0155;
 
 picture::PlanBox cropped(const picture::PlanBox& box, model::Point2 middle) {
@@ -175,8 +179,10 @@ std::size_t drop_unwritable(std::vector<picture::NamedLine>& sorted, const pictu
   return count;
 }
 
-void write_names(picture::Plan& plan, std::span<const picture::NamedLine> streets, const picture::Lettering& letters,
-                 std::span<const std::array<model::Point2, 4>> taken) {
+/// Where names stand on a map. \param taken  where they may not
+std::vector<picture::Label> placed_names(const picture::Plan& plan, std::span<const picture::NamedLine> streets,
+                                         const picture::Lettering& letters,
+                                         std::span<const std::array<model::Point2, 4>> taken) {
   const int width = plan.image().width, height = plan.image().height, side = std::max(width, height);
   picture::LabelOptions options;
   options.size = std::clamp(kNameHeight / plan.metres_per_pixel(), kLeastName * side, kLargestName * side);
@@ -186,7 +192,7 @@ void write_names(picture::Plan& plan, std::span<const picture::NamedLine> street
   options.between = 0.2 * options.size;
   options.covers = [&](int x, int y) {
     if (x < 0 || y < 0 || x >= width || y >= height) return 0.0;
-    const std::uint8_t* const p = std::as_const(plan).image().pixel(x, y);
+    const std::uint8_t* const p = plan.image().pixel(x, y);
     // Paper, streets, courtyards and what lies between them are pale, buildings less so, walls strong: they are what the plan
     // is about.
     const int bright = (p[0] + p[1] + p[2]) / 3;
@@ -195,17 +201,85 @@ void write_names(picture::Plan& plan, std::span<const picture::NamedLine> street
   std::vector<picture::NamedLine> lines(streets.begin(), streets.end());
   for (picture::NamedLine& line : lines)
     for (model::Point2& p : line.points) p = plan.pixel_of(p);
-  for (const picture::Label& label : picture::place_labels(lines, width, height, options, letters, taken))
-    letters.write(
-        plan.image(), label.start(), label.text,
-        {.size = label.size, .colour = kNameInk, .halo = 0.13 * label.size, .halo_colour = picture::kPlanPaper},
-        label.direction);
+  return picture::place_labels(lines, width, height, options, letters, taken);
 }
 
-picture::Plan drawn_map(std::span<const picture::PlanTile> tiles, const picture::PlanBox& box, int pixels) {
-  picture::Plan plan(box, std::min(kFinest, picture::scale_for(box, pixels)), picture::kPlanPaper);
-  picture::draw(plan, tiles);
-  return plan;
+/// \param times  pixels of this picture for one of the map on which the names were placed
+/// \param first  px: the topmost row of this picture, of a map that is larger by as much
+void write_names(picture::Image& image, std::span<const picture::Label> names, const picture::Lettering& letters,
+                 double times = 1, double first = 0) {
+  for (picture::Label label : names) {
+    label.middle = {label.middle.x * times, label.middle.y * times - first};
+    label.size *= times;
+    label.width *= times;
+    const std::array<model::Point2, 4> box = label.corners();
+    if (std::ranges::all_of(box, [&](model::Point2 p) { return p.y < -label.size; }) ||
+        std::ranges::all_of(box, [&](model::Point2 p) { return p.y > image.height + label.size; }))
+      continue;
+    letters.write(image, label.start(), label.text,
+                  {.size = label.size, .colour = kNameInk, .halo = 0.13 * label.size, .halo_colour = picture::kPlanPaper},
+                  label.direction);
+  }
+}
+
+/// A map that is drawn in bands of rows: all of it at once takes thirty megabytes.
+class BandedMap {
+ public:
+  BandedMap(std::span<const picture::PlanTile> tiles, const picture::PlanBox& box, int pixels)
+      : tiles_(tiles), box_(box), scale_(std::min(kFinest, picture::scale_for(box, pixels))) {}
+
+  int width() const { return size(box_.width()); }    ///< px
+  int height() const { return size(box_.height()); }  ///< px
+  double metres_per_pixel() const { return 1 / scale_; }
+  picture::Plan drawn(int first, int end) const {
+    picture::Plan plan({box_.min_x, box_.max_y - end / scale_, box_.max_x, box_.max_y - first / scale_}, scale_,
+                       picture::kPlanPaper);
+    picture::draw(plan, tiles_);
+    return plan;
+  }
+  picture::Plan whole() const { return drawn(0, height()); }
+
+ private:
+  int size(double metres) const { return static_cast<int>(std::ceil(metres * scale_ - 1e-6)); }
+  std::span<const picture::PlanTile> tiles_;
+  picture::PlanBox box_;
+  double scale_;
+};
+
+/// The sheet with the map, and a smaller picture of the map, as PNG files of the same few colours.
+/// \param small  has the map's names
+/// \param times  pixels of the map for one of the small one
+std::pair<std::string, std::string> png_files(const BandedMap& map, const picture::SheetText& text,
+                                              const picture::Image& small, std::span<const picture::Label> names,
+                                              double times, const picture::Lettering& letters) {
+  constexpr int kBand = 200;  // px
+  const picture::Sheet sheet(map.width(), map.height(), text);
+  const auto bands = [&](int from, int to, const auto& use) {
+    for (int first = from; first < to; first += kBand) {
+      const int end = std::min(first + kBand, to);
+      picture::Image rows = picture::blank(sheet.width(), end - first, kSheetPaper);
+      const int top = std::max(first - sheet.map_top(), 0), bottom = std::min(end - sheet.map_top(), map.height());
+      if (top < bottom) {
+        picture::Plan part = map.drawn(top, bottom);
+        write_names(part.image(), names, letters, times, top);
+        picture::put(rows, part.image(), sheet.map_left(), top + sheet.map_top() - first);
+      }
+      sheet.draw(rows, first);
+      use(rows);
+    }
+  };
+  picture::Palette palette;
+  const auto count = [&](const picture::Image& rows) { palette.count(rows); };
+  palette.count(small, kSmallWeight);
+  bands(0, sheet.map_top(), count);
+  bands(sheet.map_top() + map.height(), sheet.height(), count);
+  palette.choose(256);
+  picture::PaletteImage large_image, small_image;
+  large_image.palette = small_image.palette = palette.colours();
+  large_image.pixels.reserve(static_cast<std::size_t>(sheet.width()) * static_cast<std::size_t>(sheet.height()));
+  bands(0, sheet.height(), [&](const picture::Image& rows) { palette.append(rows, large_image.pixels); });
+  palette.append(small, small_image.pixels);
+  return {picture::png(sheet.width(), large_image, kSheetLevel), picture::png(small.width, small_image, kSheetLevel)};
 }
 
 /// Where the words of a scale bar stand.
@@ -286,16 +360,18 @@ PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const context::Context
           text.below_title.push_back(fmt::format(
               "{} left out: in letters that this program's font lacks.",
               names == 1 ? "The name of one street is" : fmt::format("The names of {} streets are", names)));
-        picture::Plan large = drawn_map(tiles, box, kFilePixels);
-        write_names(large, streets, letters, {});
-        text.legend = picture::legend_of(tiles, box);
-        text.metres_per_pixel = large.metres_per_pixel();
-        drawn.png = picture::png(picture::sheet(large.image(), text, kSheetPaper));
-        picture::Plan small = drawn_map(tiles, box, kReportPixels);
+        const BandedMap small_map(tiles, box, kReportPixels), large_map(tiles, box, kFilePixels);
+        picture::Plan small = small_map.whole();
         const std::array taken{scale_bar_box(small, small.draw_scale_bar()),
                                picture::sign(small.image(), words.attribution)};
-        write_names(small, streets, letters, taken);
-        drawn.in_report = {picture::png(small.image()), small.image().width, small.image().height,
+        const std::vector<picture::Label> names = placed_names(small, streets, letters, taken);
+        write_names(small.image(), names, letters);
+        text.legend = picture::legend_of(tiles, box);
+        text.metres_per_pixel = large_map.metres_per_pixel();
+        auto [sheet, in_report] = png_files(large_map, text, small.image(), names,
+                                            small_map.metres_per_pixel() / large_map.metres_per_pixel(), letters);
+        drawn.png = std::move(sheet);
+        drawn.in_report = {std::move(in_report), small.image().width, small.image().height,
                            "From above. " + text.north + ". Walls in the colours of what they face."};
         return drawn;
       });

@@ -15,6 +15,7 @@
 #include "pipeline/outputs/gltf/element_geometry.h"
 #include "pipeline/outputs/gltf/mesh_buffers.h"
 #include "pipeline/picture/lettering.h"
+#include "pipeline/picture/lighting.h"
 #include "pipeline/picture/render.h"
 
 namespace blockrand::outputs {
@@ -136,7 +137,7 @@ class DetailPainter {
       const Point3 shift = out * (dot(a - corner(first, 0), out) + kBeforeWall);
       const model::Colour colour = colour_of(o, element_in[i], solid);
       for (std::uint32_t t = first; t < end; ++t)
-        scene.add_triangle({corner(t, 0) + shift, corner(t, 1) + shift, corner(t, 2) + shift}, colour, object);
+        scene.add_outside({corner(t, 0) + shift, corner(t, 1) + shift, corner(t, 2) + shift}, colour, object);
     }
     for (const model::RoofInstallation& body : detail.roof_installations) scene.add(body.solid, body.triangles, object);
   }
@@ -209,8 +210,18 @@ struct View {
   std::string_view from, to;
 };
 
+/// Cells along a side of the shadow map of what stands near by: 12 cm.
+constexpr int kNearShadowMap = 1536;
+
+picture::Box box_around(std::span<const Point3> points) {
+  picture::Box box;
+  for (const Point3& p : points) box.include(p);
+  return box;
+}
+
 constexpr double kElevation = 38, kFieldOfView = 30, kMargin = 0.07;
 constexpr int kWidth = 1200, kHeight = 750;
+constexpr int kPairWidth = 832, kPairHeight = 520;  // two stand side by side
 
 /// The view that shows most: a long town is seen from its side. The south-west is preferred unless another is much nearer.
 View best_view(std::span<const Point3> points) {
@@ -314,9 +325,9 @@ PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, s
 }
 
 void Pictures::add(PictureTile&& tile) {
-  scene_.append(tile.scene, static_cast<std::uint32_t>(buildings_.size()));
-  flat_.append(tile.flat, static_cast<std::uint32_t>(buildings_.size()));
-  detail_.append(tile.detail, static_cast<std::uint32_t>(buildings_.size()));
+  scene_.append(std::move(tile.scene), static_cast<std::uint32_t>(buildings_.size()));
+  flat_.append(std::move(tile.flat), static_cast<std::uint32_t>(buildings_.size()));
+  detail_.append(std::move(tile.detail), static_cast<std::uint32_t>(buildings_.size()));
   buildings_.insert(buildings_.end(), tile.buildings.begin(), tile.buildings.end());
 }
 
@@ -406,26 +417,28 @@ std::vector<outputs::ReportPicture> Pictures::shoot(int workers, std::string_vie
     shots.push_back(std::move(shot));
   };
   add(core, {view.azimuth, kElevation}, kFieldOfView, kWidth, kHeight, fmt::format("Seen from the {}.", view.from));
-  add(core, {view.azimuth + 180, kElevation}, kFieldOfView, 960, 600, fmt::format("The same from the {}.", view.to));
+  add(core, {view.azimuth + 180, kElevation}, kFieldOfView, kPairWidth, kPairHeight, fmt::format("The same from the {}.", view.to));
   std::vector<Point3> near = points_near(scene_, plan_.spot, kDetailReach);
-  add(near.empty() ? core : near, {view.azimuth, 27}, 40, 960, 600, "Where houses stand densest.");
-  shots.back().options.sky_directions = 64;  // near by, single shades of the sky would show
+  add(near.empty() ? core : near, {view.azimuth, 27}, 40, kPairWidth, kPairHeight, "Where houses stand densest.");
 
+  // Bodies alone throw shadows and take light of the sky away, but for those of the last picture.
+  picture::Lighting lighting(scene_, shots.front().options), near_by(lighting);
   std::vector<bool> in_detail;
   for (const PicturedBuilding& b : buildings_) in_detail.push_back(b.detailed);
   const bool detailed = !detail_.empty();
-  // Bodies alone take light of the sky away: their windows would be drawn a hundred times for nothing.
   flat_.append(scene_);
-  const picture::Scene& all = flat_;
-  if (detailed) detail_.append(all.without(in_detail));  // now all that the last picture shows
+  if (detailed) detail_.append(flat_.without(in_detail));  // now all that the last picture shows
+  scene_ = picture::Scene(plan_.origin);
+  if (detailed) near_by.refine(detail_, box_around(near.empty() ? core : near), kNearShadowMap);
 
   out.resize(shots.size());
   base::ordered_parallel(
       shots.size(), std::min<int>(workers, 2), shots.size(),
       [&](std::size_t i) {
         const Shot& shot = shots[i];
-        const bool close = i + 1 == shots.size();
-        picture::Image image = picture::render(close && detailed ? detail_ : all, shot.camera, shot.options, &scene_);
+        const bool close = i + 1 == shots.size() && detailed;
+        picture::Image image =
+            picture::render(close ? detail_ : flat_, shot.camera, shot.options, close ? &near_by : &lighting);
         picture::sign(image, attribution);
         out[i] = {picture::png(image), shot.options.width, shot.options.height, shot.caption};
       },

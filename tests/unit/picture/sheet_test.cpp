@@ -74,6 +74,25 @@ TEST(Sheet, LongWordsNeitherCrashNorWidenIt) {
   }
 }
 
+TEST(Sheet, IsTheSameInBands) {
+  const Image map = map_of(1500, 700), whole = sheet(map, words(), kPaper);
+  const SheetText text = words();
+  const Sheet layout(map.width, map.height, text);
+  ASSERT_EQ(layout.width(), whole.width);
+  ASSERT_EQ(layout.height(), whole.height);
+  for (int first = 0; first < whole.height; first += 90) {
+    const int rows = std::min(90, whole.height - first);
+    Image band = blank(whole.width, rows, kPaper);
+    put(band, map, layout.map_left(), layout.map_top() - first);
+    layout.draw(band, first);
+    ASSERT_EQ(band.height, rows);
+    for (int y = 0; y < rows; ++y)
+      for (int x = 0; x < whole.width; ++x)
+        for (int c = 0; c < 3; ++c)
+          ASSERT_NEAR(band.pixel(x, y)[c], whole.pixel(x, first + y)[c], 2) << x << ' ' << first + y;
+  }
+}
+
 TEST(Sheet, WithoutWordsIsAFrame) {
   const Image out = sheet(map_of(1300, 300), {}, kPaper);
   EXPECT_LT(out.height, 500);
