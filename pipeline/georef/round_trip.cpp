@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "pipeline/georef/tile_frame.h"
 #include "pipeline/georef/tiles.h"
@@ -19,6 +20,7 @@ double round_up(double metres) { return std::ceil(metres * 1e6) / 1e6; }
 
 RoundTrip measure_round_trip(const Projection& projection, const GeoBox& extent, int level) {
   RoundTrip result;
+  std::map<model::TileId, TileFrame> tiles;  // of a quarter few: a frame costs as much as two hundred points
   for (int i = 0; i < kSamples; ++i) {
     for (int j = 0; j < kSamples; ++j) {
       const LonLat p = extent.at(i / (kSamples - 1.0), j / (kSamples - 1.0));
@@ -34,7 +36,8 @@ RoundTrip measure_round_trip(const Projection& projection, const GeoBox& extent,
 
       const model::Location location{static_cast<std::int32_t>(std::nearbyint(p.lon * 1e7)),
                                      static_cast<std::int32_t>(std::nearbyint(p.lat * 1e7))};
-      const TileFrame tile(projection, tile_of(location, level));
+      const model::TileId id = tile_of(location, level);
+      const TileFrame& tile = tiles.try_emplace(id, projection, id).first->second;
       const model::Point3 local = tile.to_local({crs.x, crs.y, kSampleHeight});
       const Geodetic geodetic = from_ecef(tile.frame().to_ecef(local));
       const model::Point2 again = projection.forward(geodetic.lon, geodetic.lat);
