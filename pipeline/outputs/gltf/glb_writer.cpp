@@ -28,6 +28,8 @@ std::array<T, 3> y_up(T east, T north, T up) {
   return {east, up, static_cast<T>(0 - north)};
 }
 
+constexpr std::string_view kPiecesName = "elements";
+
 /// Of placed shapes in one file, each a draw call. Below 60 with the mesh, which has one for every 65,535 vertices.
 constexpr std::size_t kMostShapes = 50;
 
@@ -40,12 +42,18 @@ class MeshWriter {
                      std::fabs(mesh.max.y), std::fabs(mesh.max.z)}) > kFinestReach;
   }
 
-  /// \param material  for which `table` tells where classes are
-  /// \return how many triangles it wrote
+  /// A node of the solids, and one of the pieces of elements, by whose name readers know them apart.
+  /// \param material  for which `table` tells where classes are \return how many triangles it wrote
   std::size_t write(int material, const MaterialTable& table) {
+    return write(mesh_.primitives, "", material, table) + write(mesh_.pieces, kPiecesName, material, table);
+  }
+
+ private:
+  std::size_t write(const std::vector<MeshPrimitive>& primitives, std::string_view name, int material,
+                    const MaterialTable& table) {
     std::string json = "{\"primitives\":[";
     std::size_t triangles = 0;
-    for (const MeshPrimitive& all : mesh_.primitives) {
+    for (const MeshPrimitive& all : primitives) {
       const MeshPrimitive p = packed(all);
       if (p.indices.empty()) continue;
       triangles += p.indices.size() / 3;
@@ -66,11 +74,14 @@ class MeshWriter {
     const int mesh = document_.add_mesh(json + "]}");
     json = "{\"mesh\":";
     append_number(json, std::int64_t{mesh});
+    if (!name.empty()) {
+      json += ",\"name\":";
+      append_json(json, name);
+    }
     document_.add_root(document_.add_node(json + '}'));
     return triangles;
   }
 
- private:
   static void attribute(std::string& json, const char* name, int accessor) {
     if (json.back() != '{') json += ',';
     json += '"';

@@ -322,15 +322,15 @@ class SolidWriter {
 
 void set_box(Mesh& mesh) {
   bool first = true;
-  for (const MeshPrimitive& primitive : mesh.primitives) {
-    for (const MeshVertex& v : primitive.vertices) {
-      const model::Point3& p = mesh.positions[v.position];
-      if (first) mesh.min = mesh.max = p;
-      first = false;
-      mesh.min = {std::min(mesh.min.x, p.x), std::min(mesh.min.y, p.y), std::min(mesh.min.z, p.z)};
-      mesh.max = {std::max(mesh.max.x, p.x), std::max(mesh.max.y, p.y), std::max(mesh.max.z, p.z)};
-    }
-  }
+  for (const auto* list : {&mesh.primitives, &mesh.pieces})
+    for (const MeshPrimitive& primitive : *list)
+      for (const MeshVertex& v : primitive.vertices) {
+        const model::Point3& p = mesh.positions[v.position];
+        if (first) mesh.min = mesh.max = p;
+        first = false;
+        mesh.min = {std::min(mesh.min.x, p.x), std::min(mesh.min.y, p.y), std::min(mesh.min.z, p.z)};
+        mesh.max = {std::max(mesh.max.x, p.x), std::max(mesh.max.y, p.y), std::max(mesh.max.z, p.z)};
+      }
 }
 
 }  // namespace
@@ -348,8 +348,10 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool b
       const ElementGeometry geometry = element_geometry(*element.element, false);
       for (const ElementInstance& at : group.instances) bake_element(element, geometry, at, mesh, primitives);
     }
-  for (const BakedPiece& piece : pieces) bake_piece(piece, mesh, primitives);
+  Primitives of_pieces(Primitives::By::all);
+  for (const BakedPiece& piece : pieces) bake_piece(piece, mesh, of_pieces);
   mesh.primitives = primitives.take();
+  mesh.pieces = of_pieces.take();
   set_box(mesh);
   return mesh;
 }

@@ -35,9 +35,10 @@ struct MeshPrimitive {
 struct Mesh {
   std::vector<model::Point3> positions;   ///< east, north, up in metres
   std::vector<MeshPrimitive> primitives;  ///< none is empty
+  std::vector<MeshPrimitive> pieces;      ///< of elements, apart from solids
   model::Point3 min, max;                 ///< of the positions
   std::size_t triangles = 0;
-  bool empty() const { return primitives.empty(); }
+  bool empty() const { return primitives.empty() && pieces.empty(); }
 };
 
 /// Faces of a LoD3 solid that are left to elements: the polygons of openings, and unless `bake` is set their reveals. By face.
@@ -53,7 +54,7 @@ std::vector<bool> hidden_faces(const model::Region& region, const model::Detail&
 /// Shading is flat: a face's vertices share the normal of its plane (Newell's method in the local frame). Corners of a
 /// part with equal position, normal, colour and material become one vertex. Faces are in the order of the parts.
 /// Primitives are as few as there can be: vertices have their looks. \param pieces  of elements that are not placed;
-/// they follow the solids
+/// they are kept apart
 Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake = false,
                 std::span<const BakedPiece> pieces = {});
 
