@@ -87,6 +87,7 @@ class Reader {
       c.bodies.push_back(std::move(body));
     }
     out_.triangles.resize(c.bodies.size());
+    out_.element_triangles.resize(c.bodies.size());
     buildings_.insert(c.buildings.begin(), c.buildings.end());
   }
 
@@ -131,11 +132,13 @@ class Reader {
     } else if (instancing || feature) {
       const auto placed = placed_mesh(*node, index);
       if (placed && instancing)
-        read_instances(*node, *instancing, own, *placed, where);
+        out_.pieces = true, read_instances(*node, *instancing, own, *placed, where);
       else if (placed)
         add_place(*placed, number(feature).value_or(-1), own, where);
     } else if (member(node, "mesh")) {
-      read_mesh(*node, own, "");
+      of_elements_ = text(member(node, "name")) == "elements";
+      read_mesh(*node, own, of_elements_ ? "elements, " : "");
+      of_elements_ = false;
     }
     if (const Json* children = member(node, "children"); children && children->is_array())
       for (const Json& child : *children) read_node(whole(&child).value_or(~0ull), here, seen);
@@ -457,7 +460,7 @@ class Reader {
                      nz = glb_.value(*s.normal, corner[0], 2);
         const Point3 said = placed ? Point3{nx, ny, nz} : Point3{nx, 0.0 - nz, ny};
         const double longest = std::max({length(c[1] - c[0]), length(c[2] - c[1]), length(c[0] - c[2])});
-        if (area / longest > (placed ? kElementSliver : 0.1) &&
+        if (area / longest > (placed || of_elements_ ? kElementSliver : 0.1) &&
             n.x * said.x + n.y * said.y + n.z * said.z <= 0.5 * area)
           first(turned, fmt::format("triangle {} does not look where its normal points", t / 3));
       }
@@ -482,14 +485,15 @@ class Reader {
         if (++two_features <= kNoted) metadata(fmt::format("{}: triangle {} belongs to two features", where, t / 3));
         continue;
       }
-      if (row >= 0 && row < static_cast<double>(out_.triangles.size()))
-        out_.triangles[static_cast<std::size_t>(row)].push_back(triangle);
+      auto& to = of_elements_ ? out_.element_triangles : out_.triangles;
+      if (row >= 0 && row < static_cast<double>(to.size())) to[static_cast<std::size_t>(row)].push_back(triangle);
     }
   }
 
   const GlbContainer& glb_;
   Glb& out_;
   std::map<std::uint64_t, std::size_t> element_of_mesh_;
+  bool of_elements_ = false;         ///< the mesh that is read is of elements
   bool objects_ = false;             ///< the scene has objects of houses
   std::set<std::string> buildings_;  ///< of the table
   std::set<std::string> houses_;     ///< that have an object
@@ -517,6 +521,7 @@ void append(Glb& glb, Glb&& piece) {
   glb.contents.elements.merge(piece.contents.elements);
   move(glb.contents.findings, piece.contents.findings);
   move(glb.triangles, piece.triangles);
+  move(glb.element_triangles, piece.element_triangles);
   move(glb.elements, piece.elements);
   move(glb.places, piece.places);
   move(glb.vertices, piece.vertices);
@@ -526,9 +531,10 @@ void append(Glb& glb, Glb&& piece) {
 std::vector<double> drawn_areas(const Glb& glb) {
   const auto area = [](const Point3& a, const Point3& b, const Point3& c) { return length(cross(b - a, c - a)) / 2; };
   std::vector<double> out;
-  for (const auto& triangles : glb.triangles) {
+  for (std::size_t i = 0; i < glb.triangles.size(); ++i) {
     double sum = 0;
-    for (const GlbTriangle& t : triangles) sum += area(t.corners[0], t.corners[1], t.corners[2]);
+    for (const auto* triangles : {&glb.triangles[i], &glb.element_triangles[i]})
+      for (const GlbTriangle& t : *triangles) sum += area(t.corners[0], t.corners[1], t.corners[2]);
     out.push_back(sum);
   }
   for (const GlbPlace& place : glb.places)

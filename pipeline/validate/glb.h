@@ -51,7 +51,10 @@ struct Glb {
   /// building has "<id>.1" as its id, as in CityGML. Findings: GLB_RULE, METADATA_RULE, GEOREFERENCE.
   Contents contents;
   std::vector<std::vector<GlbTriangle>> triangles;  ///< parallel to contents.bodies
+  /// The same of elements that are part of the tile's mesh: below a node called "elements".
+  std::vector<std::vector<GlbTriangle>> element_triangles;
   std::vector<GlbElement> elements;
+  bool pieces = false;  ///< places are those of pieces, of which an element has several
   std::vector<GlbPlace> places;  ///< of elements: by EXT_mesh_gpu_instancing, or nodes with extras.feature
   /// The scene is made of objects: nodes with a building's id in `extras`, below them those of its parts.
   bool objects = false;

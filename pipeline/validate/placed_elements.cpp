@@ -30,14 +30,15 @@ class Box {
   Box(const GlbPlace& place, const GlbElement& element) {
     const Matrix& m = place.matrix;
     origin_ = placed(place, {0, 0, 0});
-    const double low[] = {element.min.x, element.min.y}, high[] = {element.max.x, element.max.y};
+    // Openings lie in the plane of the origin, which elements reach from behind or before.
+    const double low[] = {element.min.x, element.min.y, std::min(element.min.z, 0.0)},
+                 high[] = {element.max.x, element.max.y, std::max(element.max.z, 0.0)};
     for (std::size_t i = 0; i < 3; ++i) {
       const Point3 column{m[4 * i], 0.0 - m[4 * i + 2], m[4 * i + 1]};
       const double square = dot(column, column), length = std::sqrt(square);
       axis_[i] = {column.x / length, column.y / length, column.z / length};
-      // The third axis leads out of the wall: openings lie in its plane.
-      low_[i] = (i < 2 ? low[i] * length : 0) - kAround;
-      high_[i] = (i < 2 ? high[i] * length : 0) + kAround;
+      low_[i] = low[i] * length - kAround;
+      high_[i] = high[i] * length + kAround;
     }
   }
   bool holds(const Point3& p) const {
@@ -92,6 +93,22 @@ std::vector<Point3> open_edges(const std::vector<GlbTriangle>& triangles) {
   }
   std::sort(out.begin(), out.end());
   return out;
+}
+
+/// m, from the nearest point of the triangle.
+double distance(const Point3& p, const GlbTriangle& t) {
+  const auto& [a, b, c] = t.corners;
+  const Point3 n = cross(b - a, c - a);
+  const double square = dot(n, n);
+  const auto to_edge = [&](const Point3& from, const Point3& to) {
+    const Point3 edge = to - from;
+    const double along = dot(edge, edge);
+    const double at = along > 0 ? std::clamp(dot(p - from, edge) / along, 0.0, 1.0) : 0;
+    return length(p - (from + edge * at));
+  };
+  const auto inside = [&](const Point3& from, const Point3& to) { return dot(cross(to - from, p - from), n) >= 0; };
+  if (square > 0 && inside(a, b) && inside(b, c) && inside(c, a)) return std::fabs(dot(p - a, n)) / std::sqrt(square);
+  return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
 }
 
 std::vector<std::vector<const GlbPlace*>> places_by_row(const Glb& glb) {
@@ -178,17 +195,137 @@ void check_openings(const Glb& glb, const std::string& file, std::vector<Finding
     for (const GlbPlace* place : places[row])
       in_plan.push_back(boxes.emplace_back(*place, glb.elements[place->element]).in_plan());
     const geometry::BoxIndex index(std::move(in_plan));
+    const std::vector<GlbTriangle>& triangles = glb.element_triangles[row];
+    std::vector<geometry::PlanBox> of_triangles;
+    for (const GlbTriangle& t : triangles) {
+      geometry::PlanBox& box = of_triangles.emplace_back();
+      for (const Point3& c : t.corners) box.include(c.xy());
+    }
+    const geometry::BoxIndex triangle_index(std::move(of_triangles));
     std::size_t open = 0;
     Point3 where;
     for (const Point3& p : open_edges(glb.triangles[row])) {
       const auto near = index.near({p.xy(), p.xy()}, kAround);
-      if (std::none_of(near.begin(), near.end(), [&](std::uint32_t i) { return boxes[i].holds(p); }) && open++ == 0)
-        where = p;
+      if (std::any_of(near.begin(), near.end(), [&](std::uint32_t i) { return boxes[i].holds(p); })) continue;
+      const auto around = triangle_index.near({p.xy(), p.xy()}, kAround);
+      if (std::any_of(around.begin(), around.end(), [&](std::uint32_t i) { return distance(p, triangles[i]) <= kAround; }))
+        continue;
+      if (open++ == 0) where = p;
     }
     if (open > 0)
       findings.push_back({Check::glb_rule, file, body.id,
                           fmt::format("its mesh is open at {} edges where no element stands, at {:.3f} {:.3f} {:.3f}",
                                       open, where.x, where.y, where.z)});
+  }
+}
+
+namespace {
+
+std::string text(const std::array<std::uint8_t, 3>& colour) {
+  return fmt::format("#{:02x}{:02x}{:02x}", colour[0], colour[1], colour[2]);
+}
+
+/// Something that is drawn of an element.
+struct Drawn {
+  std::vector<Point3> points;  ///< of its box, or its corners; m in the tile's frame
+  bool of_wall = false;        ///< in the colours of walls alone: perhaps a reveal, which is no part of elements elsewhere
+  bool held = false;           ///< an element's box holds it
+};
+
+}  // namespace
+
+void compare_pieces(const Side& reference, const Glb& glb, const std::string& glb_file, const ToLocal& to_local,
+                    double tolerance, std::vector<Finding>& findings) {
+  std::unordered_map<std::string_view, std::size_t> rows;
+  for (std::size_t i = 0; i < glb.contents.bodies.size(); ++i) rows.emplace(glb.contents.bodies[i].id, i);
+  const auto places = places_by_row(glb);
+  std::vector<std::set<std::string>> colours_of;
+  for (const GlbElement& element : glb.elements) {
+    auto& set = colours_of.emplace_back();
+    for (const GlbTriangle& t : element.triangles) set.insert(text(t.colour));
+  }
+  for (const ReadBody& body : reference.contents.bodies) {
+    const auto row = rows.find(body.id);
+    if (row == rows.end()) continue;
+    const std::set<std::string> walls = wall_colours(body);
+    const auto of_wall = [&](const std::string& colour) { return walls.count(colour) > 0; };
+    std::vector<Drawn> drawn;
+    std::set<std::string> has;
+    for (const GlbPlace* place : places[row->second]) {
+      const GlbElement& e = glb.elements[place->element];
+      const auto& colours = colours_of[place->element];
+      has.insert(colours.begin(), colours.end());
+      Drawn& d = drawn.emplace_back();
+      d.of_wall = std::all_of(colours.begin(), colours.end(), of_wall);
+      for (int i = 0; i < 8; ++i)
+        d.points.push_back(placed(*place, {i & 1 ? e.max.x : e.min.x, i & 2 ? e.max.y : e.min.y, i & 4 ? e.max.z : e.min.z}));
+    }
+    for (const GlbTriangle& t : glb.element_triangles[row->second]) {
+      has.insert(text(t.colour));
+      drawn.push_back({{t.corners.begin(), t.corners.end()}, of_wall(text(t.colour)), false});
+    }
+    std::vector<geometry::PlanBox> in_plan;
+    for (const Drawn& d : drawn) {
+      geometry::PlanBox& box = in_plan.emplace_back();
+      for (const Point3& p : d.points) box.include(p.xy());
+    }
+    const geometry::BoxIndex index(std::move(in_plan));
+
+    std::vector<Point3> from;
+    for (const ReadPlacement& p : body.detail.placements) {
+      from.push_back(p.origin);
+      from.push_back({p.origin.x + p.along.x, p.origin.y + p.along.y, p.origin.z});
+    }
+    std::vector<Point3> at(from.size());
+    to_local(from, at);
+    std::set<std::string> wanted;
+    std::size_t empty = 0;
+    Point3 where;
+    for (std::size_t n = 0; n < body.detail.placements.size(); ++n) {
+      const auto found = reference.contents.elements.find(body.detail.placements[n].element);
+      if (found == reference.contents.elements.end()) continue;
+      const ReadElement& element = found->second;
+      wanted.insert(element.colours.begin(), element.colours.end());
+      const Point3 origin = at[2 * n];
+      const Point2 along = direction(origin, at[2 * n + 1]);
+      const double around = tolerance + kAround;
+      double left = 1e300, right = -1e300, low = 1e300, high = -1e300;
+      geometry::PlanBox box;
+      for (const double x : {element.min.x, element.max.x})
+        for (const double y : {element.min.y, element.max.y})
+          box.include(Point2{origin.x + along.x * x - along.y * y, origin.y + along.y * x + along.x * y});
+      for (const std::uint32_t i : index.near(box, around)) {
+        bool inside = true;
+        double l = 1e300, r = -1e300, b = 1e300, t = -1e300;
+        for (const Point3& p : drawn[i].points) {
+          const Point2 d{p.x - origin.x, p.y - origin.y};
+          const double x = d.x * along.x + d.y * along.y, y = d.y * along.x - d.x * along.y, z = p.z - origin.z;
+          inside = inside && x > element.min.x - around && x < element.max.x + around && y > element.min.y - around &&
+                   y < element.max.y + around && z > element.min.z - around && z < element.max.z + around;
+          l = std::min(l, x), r = std::max(r, x), b = std::min(b, z), t = std::max(t, z);
+        }
+        if (!inside) continue;
+        drawn[i].held = true;
+        left = std::min(left, l), right = std::max(right, r), low = std::min(low, b), high = std::max(high, t);
+      }
+      if ((left > element.min.x + around || right < element.max.x - around || low > element.min.z + around ||
+           high < element.max.z - around) &&
+          empty++ == 0)
+        where = origin;
+    }
+    const auto differs = [&](Check check, std::string what) { findings.push_back({check, glb_file, body.id, std::move(what)}); };
+    if (empty > 0)
+      differs(Check::geometry_differs, fmt::format("{} elements of {} are not there, at {:.3f} {:.3f} {:.3f}", empty,
+                                                   reference.file, where.x, where.y, where.z));
+    const auto strange = std::find_if(drawn.begin(), drawn.end(), [](const Drawn& d) { return !d.held && !d.of_wall; });
+    if (strange != drawn.end())
+      differs(Check::geometry_differs, fmt::format("an element stands where {} has none, at {:.3f} {:.3f} {:.3f}", reference.file,
+                                                   strange->points[0].x, strange->points[0].y, strange->points[0].z));
+    for (const std::string& colour : has)
+      if (!wanted.count(colour) && !of_wall(colour)) {
+        differs(Check::colour_differs, fmt::format("an element with faces in {}, which none has in {}", colour, reference.file));
+        break;
+      }
   }
 }
 

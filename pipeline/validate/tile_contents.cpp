@@ -172,7 +172,8 @@ std::optional<Glb> read_glb_file(const std::string& path, const TileContext& con
   if (glb.georeference.present && glb.georeference.crs != context.record.crs)
     result.findings.push_back({Check::georeference, path, "",
                                fmt::format("says {}, build.json says {}", glb.georeference.crs, context.record.crs)});
-  for (const auto& t : glb.triangles) result.triangles += t.size();
+  for (const auto* list : {&glb.triangles, &glb.element_triangles})
+    for (const auto& t : *list) result.triangles += t.size();
   return glb;
 }
 

@@ -161,11 +161,22 @@ void read_mesh(const Glb& glb, GlbFile& file) {
                                            .get<std::array<double, 4>>());
       const auto feature = glb.accessor(attributes.at("_FEATURE_ID_0"));
       const auto index = glb.accessor(primitive.at("indices"));
-      const std::string material =
-          document.at("materials").at(primitive.at("material").get<std::size_t>()).value("name", "");
+      const json& look = document.at("materials").at(primitive.at("material").get<std::size_t>());
+      // Classes are pixels of a picture of one row, its width the next power of two.
+      std::vector<std::string> classes;
+      std::vector<std::array<double, 4>> texture;
+      std::size_t width = 1;
+      if (look.contains("extras")) {
+        classes = look["extras"].at("classes").get<std::vector<std::string>>();
+        texture = glb.accessor(attributes.at("TEXCOORD_0"));
+        while (width < classes.size()) width *= 2;
+      }
       for (std::size_t i = 0; i + 2 < index.size(); i += 3) {
         GlbTriangle triangle;
-        triangle.material = material;
+        triangle.material = look.value("name", "");
+        if (!classes.empty())
+          triangle.material = classes.at(static_cast<std::size_t>(texture.at(static_cast<std::size_t>(index[i][0]))[0] *
+                                                                  static_cast<double>(width)));
         std::size_t row = 0;
         for (std::size_t k = 0; k < 3; ++k) {
           const auto v = static_cast<std::size_t>(index[i + k][0]);

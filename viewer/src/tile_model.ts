@@ -131,7 +131,7 @@ export class TileModel {
   // ---- bodies
 
   private make_body(): Mesh | null {
-    const parts: { primitive: Json; matrix: Matrix4; index: Values | null; positions: Values }[] = [];
+    const parts: { primitive: Json; matrix: Matrix4; index: Values | null; positions: Values; kind: number }[] = [];
     let vertices = 0,
       corners = 0;
     for (const { node, matrix } of this.glb.placed_nodes()) {
@@ -149,23 +149,27 @@ export class TileModel {
         if ((primitive.mode ?? 4) !== 4) continue;
         const positions = this.glb.values(primitive.attributes.POSITION);
         const index = primitive.indices === undefined ? null : this.glb.values(primitive.indices);
-        parts.push({ primitive, matrix, index, positions });
+        // What stands nowhere else is part of one mesh beside that of the solids.
+        const kind = node.name === 'elements' ? KIND.detail : KIND.body;
+        parts.push({ primitive, matrix, index, positions, kind });
         vertices += positions.count;
         corners += index ? index.count : positions.count;
       }
     }
     if (!vertices) return null;
+    parts.sort((a, b) => a.kind - b.kind);
+    const of_bodies = parts.reduce((sum, part) => sum + (part.kind === KIND.body ? part.positions.count : 0), 0);
     const out = new Vertices(vertices);
     const index = new Uint32Array(corners);
     let corner = 0;
     for (const part of parts) {
       const first = out.count;
-      this.add_primitive(out, part.primitive, part.matrix, part.positions);
+      this.add_primitive(out, part.primitive, part.matrix, part.positions, part.kind);
       const count = part.index ? part.index.count : part.positions.count;
       for (let i = 0; i < count; ++i)
         index[corner++] = first + (part.index ? part.index.array[i * part.index.stride]! : i);
     }
-    this.measure(out);
+    this.measure(out, of_bodies);
     const mesh = new Mesh(out.geometry(index), this.material);
     mesh.castShadow = mesh.receiveShadow = true;
     mesh.userData.model = this;
@@ -173,12 +177,12 @@ export class TileModel {
     return mesh;
   }
 
-  private add_primitive(out: Vertices, primitive: Json, matrix: Matrix4, positions: Values): void {
+  private add_primitive(out: Vertices, primitive: Json, matrix: Matrix4, positions: Values, kind: number): void {
     const normals = primitive.attributes.NORMAL === undefined ? null : this.glb.values(primitive.attributes.NORMAL);
     const ids =
       primitive.attributes._FEATURE_ID_0 === undefined ? null : this.glb.values(primitive.attributes._FEATURE_ID_0);
     const colours = primitive.attributes.COLOR_0 === undefined ? null : this.glb.values(primitive.attributes.COLOR_0);
-    const paint = painter(this.glb, primitive, colours, KIND.body);
+    const paint = painter(this.glb, primitive, colours, kind);
     const normal_matrix = new Matrix3().getNormalMatrix(matrix);
     const p = new Vector3(),
       n = new Vector3(0, 1, 0);
@@ -190,12 +194,12 @@ export class TileModel {
     }
   }
 
-  /** Where each feature stands, and how far each vertex is above its feature's foot. */
-  private measure(out: Vertices): void {
+  /** Where each feature stands, by the first vertices, and how far each vertex is above its feature's foot. */
+  private measure(out: Vertices, of_bodies: number): void {
     const rows = this.table.count;
     const low = new Float32Array(3 * rows).fill(Infinity),
       high = new Float32Array(3 * rows).fill(-Infinity);
-    for (let v = 0; v < out.count; ++v) {
+    for (let v = 0; v < of_bodies; ++v) {
       const row = out.features[2 * v]!;
       if (row >= rows) continue;
       for (let c = 0; c < 3; ++c) {
@@ -298,7 +302,11 @@ export class TileModel {
       if (there) there.push(instance);
       else places.set(key, [instance]);
     });
-    const shapes = this.elements.map((element) => coarser(this.shape(element)));
+    const in_pieces = (element: Json) => {
+      const material: Json | undefined = this.glb.json.materials?.[element.primitives[0]?.material];
+      return material?.extras?.classes !== undefined;
+    };
+    const shapes = this.elements.map((element) => coarser(this.shape(element), in_pieces(element)));
     for (const instances of places.values()) {
       const coarse = this.detail_mesh(instances, (element) => shapes[element]!);
       this.group.add(coarse);
@@ -436,14 +444,21 @@ function painter(
 ): (v: number, into: Uint8Array, at: number) => void {
   const material: Json = glb.json.materials?.[primitive.material] ?? {};
   const base: number[] = material.pbrMetallicRoughness?.baseColorFactor ?? [1, 1, 1, 1];
-  const name = String(material.name ?? '');
-  const shown = name === 'glass' ? KIND.glass : name === 'metal' && kind === KIND.detail ? KIND.metal : kind;
+  const shown = (name: unknown): number =>
+    name === 'glass' ? KIND.glass : name === 'metal' && kind === KIND.detail ? KIND.metal : kind;
+  // Tiles have one material for all classes, which vertices look up in a picture of one row: 1, 2, 4 … pixels wide.
+  const classes: string[] | undefined = material.extras?.classes;
+  const places =
+    classes && primitive.attributes.TEXCOORD_0 !== undefined ? glb.values(primitive.attributes.TEXCOORD_0) : null;
+  const width = 2 ** Math.ceil(Math.log2(Math.max(1, classes?.length ?? 1)));
+  const kinds = (classes ?? []).map(shown);
+  const one = shown(material.name);
   return (v, into, at) => {
     for (let c = 0; c < 3; ++c) {
       const own = colours ? colours.array[v * colours.stride + c]! * colours.scale : 1;
       into[at + c] = Math.round(255 * Math.sqrt(Math.min(1, base[c]! * own)));
     }
-    into[at + 3] = shown;
+    into[at + 3] = places ? (kinds[Math.floor(places.array[v * places.stride]! * places.scale * width)] ?? kind) : one;
   };
 }
 
@@ -453,8 +468,9 @@ function read3(values: Values, index: number, into: Vector3): Vector3 {
   return into.set(array[at]! * scale, array[at + 1]! * scale, array[at + 2]! * scale);
 }
 
-/** The largest triangles of a shape, which are what is seen of it from afar. */
-function coarser(shape: Shape): Shape {
+/** The largest triangles of a shape, which are what is seen of it from afar. A piece lies about its own middle, and its
+ * element's reveal is another piece. */
+function coarser(shape: Shape, piece: boolean): Shape {
   const count = shape.index.length / 3;
   if (count <= COARSE_TRIANGLES) return shape;
   const a = new Vector3(),
@@ -489,23 +505,28 @@ function coarser(shape: Shape): Shape {
     kept.forEach((v, i) => into.set(from.subarray(v * size, v * size + size) as never, i * size));
     return into;
   };
-  return backed(shape, order, {
+  if (piece && !shape.paint.some((value, i) => i % 4 === 3 && value === KIND.glass)) return without_back();
+  return backed(shape, order, without_back(), piece);
+
+  function without_back(): Shape {
+    return {
     positions: pick(shape.positions, 3, new Float32Array(3 * kept.length)),
     normals: pick(shape.normals, 3, new Float32Array(3 * kept.length)),
     paint: pick(shape.paint, 4, new Uint8Array(4 * kept.length)),
     index: new Uint32Array(index),
-  });
+    };
+  }
 }
 
 /** Frames and reveals that are left out would be holes through the house: behind an opening lies a plane in the colour
  * of its frame, wider than the opening by its depth, so that a slanting look meets it as well. The wall hides the rest of it. */
-function backed(shape: Shape, largest_first: number[], coarse: Shape): Shape {
+function backed(shape: Shape, largest_first: number[], coarse: Shape, piece: boolean): Shape {
   let depth = 0;
   for (let v = 2; v < shape.positions.length; v += 3) depth = Math.min(depth, shape.positions[v]!);
   if (depth > -0.01) return coarse; // m: it stands on the wall, not in it
   let [west, east, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
   for (let v = 0; v < shape.positions.length; v += 3) {
-    if (shape.positions[v + 2]! > -0.005) continue;
+    if (!piece && shape.positions[v + 2]! > -0.005) continue;
     west = Math.min(west, shape.positions[v]!);
     east = Math.max(east, shape.positions[v]!);
     low = Math.min(low, shape.positions[v + 1]!);
@@ -513,9 +534,9 @@ function backed(shape: Shape, largest_first: number[], coarse: Shape): Shape {
   }
   const of_frame = largest_first.map((t) => shape.index[3 * t]!).find((v) => shape.paint[4 * v + 3] === KIND.detail);
   const colour = of_frame === undefined ? [110, 110, 110, KIND.detail] : Array.from(shape.paint.subarray(4 * of_frame, 4 * of_frame + 4));
-  const z = depth - 0.01,
+  const z = piece ? 1.02 * depth : depth - 0.01,
     first = coarse.positions.length / 3;
-  west += depth, east -= depth, low += depth, high -= depth;
+  if (!piece) (west += depth), (east -= depth), (low += depth), (high -= depth);
   return {
     positions: Float32Array.of(...coarse.positions, west, low, z, east, low, z, east, high, z, west, high, z),
     normals: Float32Array.of(...coarse.normals, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1),

@@ -26,11 +26,14 @@ StreamInfo info_of(Stream stream) {
   switch (stream) {
     case Stream::positions:
       return {12, true, MeshoptCoding::steps};
+    case Stream::mesh_positions:
+      return {12, true, MeshoptCoding::mesh_steps};
     case Stream::far_positions:
       return {12, true, MeshoptCoding::attributes};
     case Stream::normals:
     case Stream::features:
     case Stream::wide_features:
+    case Stream::texture_places:
       return {4, true, MeshoptCoding::attributes};
     case Stream::colours:
     case Stream::element_positions:
@@ -42,6 +45,8 @@ StreamInfo info_of(Stream stream) {
     case Stream::far_translations:
     case Stream::scales:
       return {12, false, MeshoptCoding::attributes};
+    case Stream::piece_scales:
+      return {12, false, MeshoptCoding::scales};
     case Stream::rotations:
       return {8, false, MeshoptCoding::attributes};
     case Stream::wide_instance_features:
@@ -139,6 +144,12 @@ int GlbDocument::add_material(const std::string& json) {
   if (added) materials_.push_back(json);
   return place->second;
 }
+int GlbDocument::add_texture(std::string png) {
+  std::string json = "{";
+  field(json, "bufferView", static_cast<std::size_t>(add_view(std::move(png))));
+  images_.push_back(json + ",\"mimeType\":\"image/png\"}");
+  return static_cast<int>(images_.size()) - 1;
+}
 int GlbDocument::add_mesh(std::string json) {
   meshes_.push_back(std::move(json));
   return static_cast<int>(meshes_.size()) - 1;
@@ -224,6 +235,19 @@ std::string GlbDocument::write(Compression compression) {
   append_list(json, "nodes", nodes_);
   append_list(json, "meshes", meshes_);
   append_list(json, "materials", materials_);
+  append_list(json, "images", images_);
+  if (!images_.empty()) {
+    std::vector<std::string> textures;
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+      textures.emplace_back("{\"sampler\":0,");
+      textures.back() += "\"source\":";
+      append_number(textures.back(), static_cast<std::int64_t>(i));
+      textures.back() += '}';
+    }
+    // Nearest pixel, not beyond the edge.
+    append_list(json, "samplers", {"{\"magFilter\":9728,\"minFilter\":9728,\"wrapS\":33071,\"wrapT\":33071}"});
+    append_list(json, "textures", textures);
+  }
   append_list(json, "accessors", accessors_);
   append_list(json, "bufferViews", views);
   std::vector<std::string> buffers;

@@ -9,10 +9,13 @@
 #include <string_view>
 
 #include "pipeline/outputs/gltf/building_table.h"
+#include "pipeline/outputs/gltf/element_pieces.h"
 #include "pipeline/outputs/gltf/glb_document.h"
 #include "pipeline/outputs/gltf/linear_light.h"
 #include "pipeline/outputs/gltf/material.h"
 #include "pipeline/outputs/gltf/mesh_buffers.h"
+#include "pipeline/outputs/gltf/meshopt.h"
+#include "pipeline/outputs/gltf/piece_writer.h"
 #include "pipeline/outputs/gltf/property_table.h"
 #include "pipeline/outputs/number_text.h"
 
@@ -25,6 +28,11 @@ std::array<T, 3> y_up(T east, T north, T up) {
   return {east, up, static_cast<T>(0 - north)};
 }
 
+constexpr std::string_view kPiecesName = "elements";
+
+/// Of placed shapes in one file, each a draw call. Below 60 with the mesh, which has one for every 65,535 vertices.
+constexpr std::size_t kMostShapes = 50;
+
 /// Appends vertices and the accessors of the primitives to a document.
 class MeshWriter {
  public:
@@ -34,35 +42,81 @@ class MeshWriter {
                      std::fabs(mesh.max.y), std::fabs(mesh.max.z)}) > kFinestReach;
   }
 
-  void write(const model::Region& region) {
+  /// A node of the solids, and one of the pieces of elements, by whose name readers know them apart.
+  /// \param material  for which `table` tells where classes are \return how many triangles it wrote
+  std::size_t write(int material, const MaterialTable& table) {
+    return write(mesh_.primitives, "", material, table) + write(mesh_.pieces, kPiecesName, material, table);
+  }
+
+ private:
+  std::size_t write(const std::vector<MeshPrimitive>& primitives, std::string_view name, int material,
+                    const MaterialTable& table) {
     std::string json = "{\"primitives\":[";
-    for (const MeshPrimitive& p : mesh_.primitives) {
+    std::size_t triangles = 0;
+    for (const MeshPrimitive& all : primitives) {
+      const MeshPrimitive p = packed(all);
+      if (p.indices.empty()) continue;
+      triangles += p.indices.size() / 3;
       if (json.back() == '}') json += ',';
       json += "{\"attributes\":{";
-      if (!p.colour) attribute(json, "COLOR_0", add_colours(p));
+      attribute(json, "COLOR_0", add_colours(p));
       attribute(json, "NORMAL", add_normals(p));
       attribute(json, "POSITION", add_positions(p));
+      attribute(json, "TEXCOORD_0", add_classes(p, table));
       attribute(json, "_FEATURE_ID_0", add_features(p));
       json += "},\"extensions\":{\"EXT_mesh_features\":" + feature_ids(p) + "},\"indices\":";
       append_number(json, std::int64_t{add_indices(p)});
       json += ",\"material\":";
-      append_number(json,
-                    std::int64_t{document_.add_material(material_json(region.materials.at(p.material), p.colour))});
+      append_number(json, std::int64_t{material});
       json += '}';
     }
+    if (triangles == 0) return 0;
     const int mesh = document_.add_mesh(json + "]}");
     json = "{\"mesh\":";
     append_number(json, std::int64_t{mesh});
+    if (!name.empty()) {
+      json += ",\"name\":";
+      append_json(json, name);
+    }
     document_.add_root(document_.add_node(json + '}'));
+    return triangles;
   }
 
- private:
   static void attribute(std::string& json, const char* name, int accessor) {
     if (json.back() != '{') json += ',';
     json += '"';
     json += name;
     json += "\":";
     append_number(json, std::int64_t{accessor});
+  }
+
+  /// \return the primitive without triangles that have no area once their corners are whole steps, in the order in which
+  /// it packs best
+  MeshPrimitive packed(const MeshPrimitive& p) const {
+    using Steps = std::array<std::int64_t, 3>;
+    std::vector<Steps> steps;
+    for (const MeshVertex& v : p.vertices) {
+      const model::Point3& enu = mesh_.positions[v.position];
+      const auto whole = [](double x) { return static_cast<std::int64_t>(std::nearbyint(x * kMeshStepsPerMetre)); };
+      steps.push_back({whole(enu.x), whole(enu.y), whole(enu.z)});
+    }
+    MeshPrimitive out;
+    for (std::size_t t = 0; t + 2 < p.indices.size(); t += 3) {
+      const Steps &a = steps[p.indices[t]], &b = steps[p.indices[t + 1]], &c = steps[p.indices[t + 2]];
+      const auto cross = [&](std::size_t i, std::size_t k) {
+        return (b[i] - a[i]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[i] - a[i]);
+      };
+      if (!far_ && cross(0, 1) == 0 && cross(1, 2) == 0 && cross(2, 0) == 0) continue;
+      out.indices.insert(out.indices.end(), p.indices.begin() + static_cast<std::ptrdiff_t>(t),
+                         p.indices.begin() + static_cast<std::ptrdiff_t>(t + 3));
+    }
+    const std::vector<std::uint32_t> numbers = packing_order(out.indices, p.vertices.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (numbers[i] == ~0u) continue;
+      if (numbers[i] >= out.vertices.size()) out.vertices.resize(numbers[i] + 1);
+      out.vertices[numbers[i]] = p.vertices[i];
+    }
+    return out;
   }
 
   int add_positions(const MeshPrimitive& p) {
@@ -73,7 +127,7 @@ class MeshWriter {
       const model::Point3& enu = mesh_.positions[v.position];
       const std::array<double, 3> xyz = y_up(enu.x, enu.y, enu.z);
       for (std::size_t i = 0; i < 3; ++i) {
-        const double stored = far_ ? xyz[i] : std::nearbyint(xyz[i] * kGlbStepsPerMetre) / kGlbStepsPerMetre;
+        const double stored = far_ ? xyz[i] : std::nearbyint(xyz[i] * kMeshStepsPerMetre) / kMeshStepsPerMetre;
         const float value = static_cast<float>(stored) + 0.0f;  // no -0
         const bool first = values.size() < 3;
         bounds[0][i] = first ? value : std::min<double>(bounds[0][i], value);
@@ -81,7 +135,7 @@ class MeshWriter {
         values.push_back(value);
       }
     }
-    return add<float>(far_ ? Stream::far_positions : Stream::positions, values, Component::float32, "VEC3", p, false,
+    return add<float>(far_ ? Stream::far_positions : Stream::mesh_positions, values, Component::float32, "VEC3", p, false,
                       bounds);
   }
 
@@ -98,9 +152,21 @@ class MeshWriter {
   int add_colours(const MeshPrimitive& p) {
     std::vector<std::uint16_t> values;
     values.reserve(4 * p.vertices.size());
-    for (const model::Colour& c : p.colours)
+    for (const MeshVertex& v : p.vertices) {
+      const model::Colour& c = v.look.colour;
       values.insert(values.end(), {kLinearLight[c.r], kLinearLight[c.g], kLinearLight[c.b], std::uint16_t{65535}});
+    }
     return add<std::uint16_t>(Stream::colours, values, Component::uint16, "VEC4", p, true);
+  }
+
+  int add_classes(const MeshPrimitive& p, const MaterialTable& table) {
+    std::vector<std::uint16_t> values;
+    values.reserve(2 * p.vertices.size());
+    for (const MeshVertex& v : p.vertices) {
+      const std::array<std::uint16_t, 2> place = table.place(v.look.material);
+      values.insert(values.end(), place.begin(), place.end());
+    }
+    return add<std::uint16_t>(Stream::texture_places, values, Component::uint16, "VEC2", p, true);
   }
 
   int add_features(const MeshPrimitive& p) {
@@ -191,19 +257,28 @@ void add_box(Glb& glb, bool first, const model::Point3& min, const model::Point3
 void write_batch(GlbDocument& document, const model::Region& region, const GlbOptions& options, std::size_t rows,
                  Glb& glb) {
   const bool bake = options.instancing == Instancing::baked;
-  const Mesh mesh = build_mesh(region, options.lod, options.frame, bake);
   std::vector<InstanceGroup> groups;
   if (options.lod >= 3 && !bake) groups = element_instances(region, options.frame);
+  PiecePlan plan;
+  if (options.instancing == Instancing::ext) plan = plan_pieces(region, groups, kMostShapes);
+  const Mesh mesh = build_mesh(region, options.lod, options.frame, bake, plan.baked);
+  const MaterialTable materials(region.materials);
+  int material = -1;
+  if (!mesh.empty() || !plan.placed.empty())
+    material = document.add_material(materials.material_json(document.add_texture(materials.png())));
   if (!mesh.empty()) {
-    MeshWriter(document, mesh, rows).write(region);
+    glb.triangles = MeshWriter(document, mesh, rows).write(material, materials);
     document.use("EXT_mesh_features", false);
     document.use("KHR_mesh_quantization", true);
     add_box(glb, true, mesh.min, mesh.max);
   }
   InstanceFigures instances;
-  if (!groups.empty()) instances = write_instances(document, region, groups, options.instancing, rows);
+  if (options.instancing == Instancing::ext)
+    instances = write_pieces(document, region, groups, plan, material, materials, rows);
+  else if (!groups.empty())
+    instances = write_instances(document, region, groups);
   if (instances.places > 0) add_box(glb, mesh.empty(), instances.min, instances.max);
-  glb.triangles = mesh.triangles + instances.triangles;
+  glb.triangles += instances.triangles;
   glb.placements = instances.places;
   glb.elements = instances.elements;
 }

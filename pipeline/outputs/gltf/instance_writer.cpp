@@ -33,21 +33,15 @@ struct PlacedMesh {
 
 class InstanceWriter {
  public:
-  InstanceWriter(GlbDocument& document, const model::Region& region, std::size_t rows)
-      : document_(document),
-        region_(region),
-        elements_(document, ElementVertices::steps),
-        wide_features_(rows > 0xFFFF) {}
+  InstanceWriter(GlbDocument& document, const model::Region& region)
+      : document_(document), region_(region), elements_(document, ElementVertices::steps) {}
 
-  InstanceFigures write(const std::vector<InstanceGroup>& groups, Instancing how) {
+  InstanceFigures write(const std::vector<InstanceGroup>& groups) {
     for (const InstanceGroup& group : groups) collect(group);
     for (const PlacedMesh& placed : meshes_) {
       const int mesh = elements_.add_mesh(placed.stored, *placed.element, region_, MaterialName::plain);
       auto& children = children_[elements_[placed.stored].steps];
-      if (how == Instancing::ext)
-        children.push_back(add_instanced_node(mesh, placed));
-      else
-        for (const Place& place : placed.places) children.push_back(add_node(mesh, place, placed));
+      for (const Place& place : placed.places) children.push_back(add_node(mesh, place, placed));
     }
     figures_.elements = meshes_.size();
     for (auto step = children_.rbegin(); step != children_.rend(); ++step) add_parent(step->first, step->second);
@@ -66,24 +60,10 @@ class InstanceWriter {
     PlacedMesh& mesh = meshes_[place->second];
     for (const ElementInstance& at : group.instances) {
       mesh.places.push_back({&at, form.stretch});
-      widen(at, form);
+      widen(figures_, at, form.min, form.max, std::exchange(first_, false));
     }
     figures_.places += group.instances.size();
     figures_.triangles += stored.triangles * group.instances.size();
-  }
-
-  void widen(const ElementInstance& at, const ElementForm& form) {
-    const model::Point2 out{at.along.y, -at.along.x};
-    for (const double x : {form.min.x, form.max.x})
-      for (const double z : {form.min.z, form.max.z}) {
-        const double east = at.origin.x + at.along.x * x + out.x * z, north = at.origin.y + at.along.y * x + out.y * z;
-        const double low = at.origin.z + form.min.y, high = at.origin.z + form.max.y;
-        if (first_) figures_.min = figures_.max = {east, north, low};
-        first_ = false;
-        figures_.min = {std::min(figures_.min.x, east), std::min(figures_.min.y, north), std::min(figures_.min.z, low)};
-        figures_.max = {std::max(figures_.max.x, east), std::max(figures_.max.y, north),
-                        std::max(figures_.max.z, high)};
-      }
   }
 
   /// East, north, up to glTF's y up, in whole steps.
@@ -91,67 +71,6 @@ class InstanceWriter {
     const model::Point3& p = place.instance->origin;
     return {std::nearbyint(p.x * steps), std::nearbyint(p.z * steps), 0.0 - std::nearbyint(p.y * steps)};
   }
-  int add_instanced_node(int mesh, const PlacedMesh& placed) {
-    const StoredElement& stored = elements_[placed.stored];
-    const std::size_t n = placed.places.size();
-    std::vector<float> translations, scales, wide;
-    std::vector<std::int16_t> rotations;
-    std::vector<std::uint16_t> narrow;
-    std::set<std::uint32_t> rows;
-    bool far = false;
-    for (const Place& place : placed.places) {
-      for (const double v : translation(place, stored.steps)) {
-        translations.push_back(static_cast<float>(v) + 0.0f);
-        far = far || std::fabs(v) > kFinestReach * kGlbStepsPerMetre;
-      }
-      for (const double v : rotation_to(place.instance->along))
-        rotations.push_back(static_cast<std::int16_t>(std::nearbyint(v * 32767)));
-      scales.insert(scales.end(), {static_cast<float>(place.stretch), 1.0f, 1.0f});
-      rows.insert(place.instance->feature);
-      if (wide_features_)
-        wide.push_back(static_cast<float>(place.instance->feature));
-      else
-        narrow.push_back(static_cast<std::uint16_t>(place.instance->feature));
-    }
-    const Stream to = far ? Stream::far_translations : Stream::translations;
-    std::string json = "{\"extensions\":{\"EXT_instance_features\":{\"featureIds\":[{\"attribute\":0,\"featureCount\":";
-    const auto append_accessor = [&](const GlbAccessor& accessor) {
-      append_number(json, std::int64_t{document_.add_accessor(accessor)});
-    };
-    number(json, rows.size());
-    json += ",\"propertyTable\":0}]},\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"ROTATION\":";
-    const std::size_t r = document_.append<std::int16_t>(Stream::rotations, rotations);
-    append_accessor({.stream = Stream::rotations,
-                     .offset = r,
-                     .component = Component::int16,
-                     .type = "VEC4",
-                     .count = n,
-                     .normalised = true});
-    if (stored.stretched) {
-      json += ",\"SCALE\":";
-      const std::size_t s = document_.append<float>(Stream::scales, scales);
-      append_accessor(
-          {.stream = Stream::scales, .offset = s, .component = Component::float32, .type = "VEC3", .count = n});
-    }
-    json += ",\"TRANSLATION\":";
-    const std::size_t t = document_.append<float>(to, translations);
-    append_accessor({.stream = to, .offset = t, .component = Component::float32, .type = "VEC3", .count = n});
-    json += ",\"_FEATURE_ID_0\":";
-    const Stream ids = wide_features_ ? Stream::wide_instance_features : Stream::instance_features;
-    const std::size_t f =
-        wide_features_ ? document_.append<float>(ids, wide) : document_.append<std::uint16_t>(ids, narrow);
-    append_accessor({.stream = ids,
-                     .offset = f,
-                     .component = wide_features_ ? Component::float32 : Component::uint16,
-                     .type = "SCALAR",
-                     .count = n});
-    json += "}}},\"mesh\":";
-    append_number(json, std::int64_t{mesh});
-    document_.use("EXT_mesh_gpu_instancing", true);
-    document_.use("EXT_instance_features", false);
-    return document_.add_node(json + '}');
-  }
-
   int add_node(int mesh, const Place& place, const PlacedMesh& placed) {
     const StoredElement& stored = elements_[placed.stored];
     std::string json = "{\"extras\":{\"feature\":";
@@ -191,7 +110,6 @@ class InstanceWriter {
   GlbDocument& document_;
   const model::Region& region_;
   StoredElements elements_;
-  bool wide_features_;
   std::vector<PlacedMesh> meshes_;
   std::map<std::vector<int>, std::size_t> known_;  ///< by stored geometry and the looks of its parts
   std::map<double, std::vector<int>> children_;    ///< nodes by steps of a metre
@@ -206,9 +124,23 @@ std::array<double, 4> rotation_to(const model::Point2& along) {
   return {0, along.y < 0 ? -s : s, 0, c};
 }
 
+void widen(InstanceFigures& figures, const ElementInstance& at, const model::Point3& min, const model::Point3& max,
+           bool first) {
+  const model::Point2 out{at.along.y, -at.along.x};
+  for (const double x : {min.x, max.x})
+    for (const double z : {min.z, max.z}) {
+      const double east = at.origin.x + at.along.x * x + out.x * z, north = at.origin.y + at.along.y * x + out.y * z;
+      const double low = at.origin.z + min.y, high = at.origin.z + max.y;
+      if (first) figures.min = figures.max = {east, north, low};
+      first = false;
+      figures.min = {std::min(figures.min.x, east), std::min(figures.min.y, north), std::min(figures.min.z, low)};
+      figures.max = {std::max(figures.max.x, east), std::max(figures.max.y, north), std::max(figures.max.z, high)};
+    }
+}
+
 InstanceFigures write_instances(GlbDocument& document, const model::Region& region,
-                                const std::vector<InstanceGroup>& groups, Instancing how, std::size_t rows) {
-  return InstanceWriter(document, region, rows).write(groups, how);
+                                const std::vector<InstanceGroup>& groups) {
+  return InstanceWriter(document, region).write(groups);
 }
 
 }  // namespace blockrand::outputs

@@ -13,8 +13,8 @@ class GlbDocument;
 
 /// How placed elements are written.
 enum class Instancing : std::uint8_t {
-  ext,    ///< EXT_mesh_gpu_instancing with EXT_instance_features: a node per element, a row of the property table per
-          ///< place
+  ext,    ///< EXT_mesh_gpu_instancing with EXT_instance_features: a node per shape, a row of the property table per
+          ///< place; pieces that stand nowhere else are triangles like all others (element_pieces.h)
   nodes,  ///< a node per place, for programs without that extension; `extras.feature` is the row
   baked,  ///< triangles like all others: the largest file, which every program reads
 };
@@ -31,14 +31,17 @@ struct InstanceFigures {
   model::Point3 min, max;     ///< of the boxes of all placed elements, in east, north, up; zero without places
 };
 
-/// Adds meshes, materials, nodes and their bytes for `ext` or `nodes`. The root holds a node per step, whose scale
+/// Widens the box of what is placed by an element. \param min, max  m, of the element in its own frame
+void widen(InstanceFigures& figures, const ElementInstance& at, const model::Point3& min, const model::Point3& max,
+           bool first);
+
+/// Adds meshes, materials, nodes and their bytes for `nodes`. The root holds a node per step, whose scale
 /// turns steps into metres, and that holds the elements: positions are 16-bit integers in steps of 1/4096 m (of 1/2048
 /// m and so on for elements that reach farther than 8 m), places are whole steps.
 ///
 /// Equal geometry in other colours shares its accessors. Elements that are a profile drawn along the wall (all corners
 /// at one of two ends) are stored once for every length: places have a scale along x.
-/// \param rows  of the property table 0, which features are rows of
 InstanceFigures write_instances(GlbDocument& document, const model::Region& region,
-                                const std::vector<InstanceGroup>& groups, Instancing how, std::size_t rows);
+                                const std::vector<InstanceGroup>& groups);
 
 }  // namespace blockrand::outputs

@@ -11,6 +11,7 @@
 
 #include "pipeline/geometry/solid_builder.h"
 #include "pipeline/geometry/triangulate.h"
+#include "pipeline/model/vector.h"
 #include "pipeline/outputs/gltf/element_geometry.h"
 #include "pipeline/outputs/placed_element.h"
 
@@ -102,48 +103,25 @@ std::array<std::int8_t, 3> face_normal(const model::Solid& solid, const model::F
   return {quantise(x), quantise(y), quantise(z)};
 }
 
-/// The primitives of a mesh while faces come in: one for each material and colour, another when one is full.
+/// The primitives of a mesh while faces come in: one for all or one for each look, another when one is full.
 class Primitives {
  public:
+  enum class By : std::uint8_t { all, look };
+  explicit Primitives(By by) : by_(by) {}
+
   /// The one for a face with `corners` more vertices at most.
   MeshPrimitive& with_room(const model::PartMaterial& look, std::size_t corners) {
-    Bucket& bucket = buckets_[{look.material, look.colour.r, look.colour.g, look.colour.b}];
-    if (bucket.pieces.empty() || bucket.pieces.back().vertices.size() + corners > MeshPrimitive::kMostVertices) {
-      MeshPrimitive& fresh = bucket.pieces.emplace_back();
-      fresh.material = look.material;
-      fresh.colour = look.colour;
-    }
+    Bucket& bucket = buckets_[by_ == By::all ? std::array<std::uint8_t, 4>{}
+                                             : std::array{look.material, look.colour.r, look.colour.g, look.colour.b}];
+    if (bucket.pieces.empty() || bucket.pieces.back().vertices.size() + corners > MeshPrimitive::kMostVertices)
+      bucket.pieces.emplace_back().look = look;
     return bucket.pieces.back();
   }
 
-  /// One or more for each look.
-  std::vector<MeshPrimitive> take_by_look() {
+  std::vector<MeshPrimitive> take() {
     std::vector<MeshPrimitive> out;
     for (auto& [look, bucket] : buckets_)
       std::move(bucket.pieces.begin(), bucket.pieces.end(), std::back_inserter(out));
-    return out;
-  }
-
-  /// Colours of few vertices share the primitives of their material.
-  std::vector<MeshPrimitive> take() {
-    std::vector<MeshPrimitive> out, mixed;
-    std::optional<std::uint8_t> material;
-    const auto end_material = [&] {
-      std::move(mixed.begin(), mixed.end(), std::back_inserter(out));
-      mixed.clear();
-    };
-    for (auto& [look, bucket] : buckets_) {
-      if (material != look[0]) end_material();
-      material = look[0];
-      std::size_t vertices = 0;
-      for (const MeshPrimitive& piece : bucket.pieces) vertices += piece.vertices.size();
-      for (MeshPrimitive& piece : bucket.pieces)
-        if (vertices >= MeshPrimitive::kOwnColour)
-          out.push_back(std::move(piece));
-        else
-          mix(std::move(piece), mixed);
-    }
-    end_material();
     return out;
   }
 
@@ -152,19 +130,7 @@ class Primitives {
     std::deque<MeshPrimitive> pieces;  // a deque keeps its elements in place
   };
 
-  static void mix(MeshPrimitive&& piece, std::vector<MeshPrimitive>& mixed) {
-    if (mixed.empty()) return mixed.push_back(std::move(piece));
-    MeshPrimitive& to = mixed.back();
-    if (to.vertices.size() + piece.vertices.size() > MeshPrimitive::kMostVertices)
-      return mixed.push_back(std::move(piece));
-    if (to.colour) to.colours.assign(to.vertices.size(), *to.colour);
-    to.colour.reset();
-    to.colours.insert(to.colours.end(), piece.vertices.size(), *piece.colour);
-    const auto first = static_cast<std::uint16_t>(to.vertices.size());
-    to.vertices.insert(to.vertices.end(), piece.vertices.begin(), piece.vertices.end());
-    for (const std::uint16_t i : piece.indices) to.indices.push_back(static_cast<std::uint16_t>(first + i));
-  }
-
+  By by_;
   std::map<std::array<std::uint8_t, 4>, Bucket> buckets_;  ///< by material and colour
 };
 
@@ -238,12 +204,36 @@ void bake_element(const model::ColouredElement& element, const ElementGeometry& 
       vertex.position = static_cast<std::uint32_t>(mesh.positions.size());
       mesh.positions.push_back({at.origin.x + d.x, at.origin.y + d.y, at.origin.z + d.z});
       vertex.feature = at.feature;
+      vertex.look = look;
       const auto quantise = [](double c) { return static_cast<std::int8_t>(std::nearbyint(c * 127)); };
       vertex.normal = {quantise(n.x), quantise(n.y), quantise(n.z)};
       primitive.vertices.push_back(vertex);
     }
     for (const std::uint32_t i : part.indices) primitive.indices.push_back(static_cast<std::uint16_t>(first + i));
     mesh.triangles += part.indices.size() / 3;
+  }
+}
+
+/// Puts the triangles of a piece into the mesh, wherever it stands.
+void bake_piece(const BakedPiece& baked, Mesh& mesh, Primitives& primitives) {
+  const Piece& piece = baked.piece;
+  for (const ElementInstance& at : *baked.places) {
+    const PieceTurn turn(at.along);
+    MeshPrimitive& primitive = primitives.with_room({}, piece.vertices.size());
+    const std::size_t first = primitive.vertices.size();
+    for (const Piece::Vertex& v : piece.vertices) {
+      const model::Point3 n = turn(v.normal);
+      MeshVertex vertex;
+      vertex.position = static_cast<std::uint32_t>(mesh.positions.size());
+      mesh.positions.push_back(at.origin + turn(piece.middle + v.position));
+      vertex.feature = at.feature;
+      vertex.look = v.look;
+      const auto quantise = [](double c) { return static_cast<std::int8_t>(std::nearbyint(c * 127)); };
+      vertex.normal = {quantise(n.x), quantise(n.y), quantise(n.z)};
+      primitive.vertices.push_back(vertex);
+    }
+    for (const std::uint32_t i : piece.indices) primitive.indices.push_back(static_cast<std::uint16_t>(first + i));
+    mesh.triangles += piece.triangles();
   }
 }
 
@@ -311,6 +301,7 @@ class SolidWriter {
       vertex.feature = ref.feature;
       vertex.normal = face_normal(solid, face, mesh.positions.data() + (ref.first_position - first));
       const model::PartMaterial look{face.material, face.colour};
+      vertex.look = look;
       for (std::uint32_t t = begin; t < end; ++t) {
         if (!primitive || primitive->vertices.size() + 3 > MeshPrimitive::kMostVertices)
           primitive = &primitives.with_room(look, 3);
@@ -331,24 +322,24 @@ class SolidWriter {
 
 void set_box(Mesh& mesh) {
   bool first = true;
-  for (const MeshPrimitive& primitive : mesh.primitives) {
-    for (const MeshVertex& v : primitive.vertices) {
-      const model::Point3& p = mesh.positions[v.position];
-      if (first) mesh.min = mesh.max = p;
-      first = false;
-      mesh.min = {std::min(mesh.min.x, p.x), std::min(mesh.min.y, p.y), std::min(mesh.min.z, p.z)};
-      mesh.max = {std::max(mesh.max.x, p.x), std::max(mesh.max.y, p.y), std::max(mesh.max.z, p.z)};
-    }
-  }
+  for (const auto* list : {&mesh.primitives, &mesh.pieces})
+    for (const MeshPrimitive& primitive : *list)
+      for (const MeshVertex& v : primitive.vertices) {
+        const model::Point3& p = mesh.positions[v.position];
+        if (first) mesh.min = mesh.max = p;
+        first = false;
+        mesh.min = {std::min(mesh.min.x, p.x), std::min(mesh.min.y, p.y), std::min(mesh.min.z, p.z)};
+        mesh.max = {std::max(mesh.max.x, p.x), std::max(mesh.max.y, p.y), std::max(mesh.max.z, p.z)};
+      }
 }
 
 }  // namespace
 
-Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake) {
+Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake, std::span<const BakedPiece> pieces) {
   Bodies bodies = collect_bodies(region, lod, frame, bake);
   Mesh mesh;
   mesh.positions = std::move(bodies.local);
-  Primitives primitives;
+  Primitives primitives(Primitives::By::all);
   SolidWriter writer(bodies.source);
   for (const SolidRef& ref : bodies.solids) writer.add(ref, 0, mesh, primitives);
   if (bake && lod >= 3)
@@ -357,7 +348,10 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool b
       const ElementGeometry geometry = element_geometry(*element.element, false);
       for (const ElementInstance& at : group.instances) bake_element(element, geometry, at, mesh, primitives);
     }
+  Primitives of_pieces(Primitives::By::all);
+  for (const BakedPiece& piece : pieces) bake_piece(piece, mesh, of_pieces);
   mesh.primitives = primitives.take();
+  mesh.pieces = of_pieces.take();
   set_box(mesh);
   return mesh;
 }
@@ -373,7 +367,7 @@ void for_each_part_mesh(const model::Region& region, int lod, const Frame& frame
   auto element = elements.begin();
   for (std::uint32_t feature = 0; feature < bodies.features; ++feature) {
     Mesh mesh;
-    Primitives primitives;
+    Primitives primitives(Primitives::By::look);
     const auto end = std::find_if(ref, bodies.solids.end(), [&](const SolidRef& r) { return r.feature != feature; });
     if (ref != end) {
       const std::uint32_t first = ref->first_position;
@@ -389,7 +383,7 @@ void for_each_part_mesh(const model::Region& region, int lod, const Frame& frame
       known = element->element;
       bake_element(coloured, geometry, *element->at, mesh, primitives);
     }
-    mesh.primitives = primitives.take_by_look();
+    mesh.primitives = primitives.take();
     set_box(mesh);
     visit(feature, std::move(mesh));
   }

@@ -4,11 +4,12 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "pipeline/model/region.h"
 #include "pipeline/outputs/frame.h"
+#include "pipeline/outputs/gltf/element_pieces.h"
 
 namespace blockrand::outputs {
 
@@ -17,30 +18,27 @@ struct MeshVertex {
   std::uint32_t position = 0;           ///< into Mesh::positions
   std::uint32_t feature = 0;            ///< row of the property table
   std::array<std::int8_t, 3> normal{};  ///< east, north, up in 1/127
+  model::PartMaterial look;
   friend bool operator==(const MeshVertex&, const MeshVertex&) = default;
 };
 
-/// Faces of one material class, in one colour or with a colour for each vertex.
+/// Faces of one material and colour, or of all.
 struct MeshPrimitive {
   /// 65535 as an index would restart a primitive.
   static constexpr std::size_t kMostVertices = 65535;
-  /// From so many vertices on, a colour has a primitive and a material of its own: it saves 8 bytes a vertex and costs
-  /// about 400 and a draw call.
-  static constexpr std::size_t kOwnColour = 1024;
 
-  std::uint8_t material = 0;            ///< into Region::materials
-  std::optional<model::Colour> colour;  ///< of all faces
-  std::vector<MeshVertex> vertices;     ///< at most kMostVertices
-  std::vector<model::Colour> colours;   ///< by vertex, where not all have one
+  model::PartMaterial look;          ///< of all faces, where they have one
+  std::vector<MeshVertex> vertices;  ///< at most kMostVertices
   std::vector<std::uint16_t> indices;   ///< counter-clockwise triangles seen from outside
 };
 
 struct Mesh {
   std::vector<model::Point3> positions;   ///< east, north, up in metres
-  std::vector<MeshPrimitive> primitives;  ///< by ascending material, its own colours first; none is empty
+  std::vector<MeshPrimitive> primitives;  ///< none is empty
+  std::vector<MeshPrimitive> pieces;      ///< of elements, apart from solids
   model::Point3 min, max;                 ///< of the positions
   std::size_t triangles = 0;
-  bool empty() const { return primitives.empty(); }
+  bool empty() const { return primitives.empty() && pieces.empty(); }
 };
 
 /// Faces of a LoD3 solid that are left to elements: the polygons of openings, and unless `bake` is set their reveals. By face.
@@ -54,12 +52,14 @@ std::vector<bool> hidden_faces(const model::Region& region, const model::Detail&
 /// unless `bake` is set, which puts the elements themselves into this mesh. Bodies on walls are always part of it.
 ///
 /// Shading is flat: a face's vertices share the normal of its plane (Newell's method in the local frame). Corners of a
-/// part with equal position, normal, colour and material become one vertex. Faces are in the order of the parts within
-/// a colour.
-Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake = false);
+/// part with equal position, normal, colour and material become one vertex. Faces are in the order of the parts.
+/// Primitives are as few as there can be: vertices have their looks. \param pieces  of elements that are not placed;
+/// they are kept apart
+Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake = false,
+                std::span<const BakedPiece> pieces = {});
 
 /// The same, part by part: `visit` gets every part's row of the table and its mesh, which is empty where the part shows
-/// nothing. Primitives have one colour each, whatever its number of vertices.
+/// nothing. Primitives have one look each, by ascending material and colour.
 void for_each_part_mesh(const model::Region& region, int lod, const Frame& frame, bool bake,
                         const std::function<void(std::uint32_t feature, Mesh mesh)>& visit);
 

@@ -34,7 +34,33 @@ std::vector<std::uint32_t> filtered(std::string_view bytes, std::size_t floats, 
   return out;
 }
 
+int exponent_of(MeshoptCoding coding) {
+  switch (coding) {
+    case MeshoptCoding::steps:
+      return -12;
+    case MeshoptCoding::mesh_steps:
+      return -10;
+    case MeshoptCoding::scales:
+      return -17;
+    case MeshoptCoding::whole:
+    case MeshoptCoding::attributes:
+    case MeshoptCoding::triangles:
+      break;
+  }
+  return 0;
+}
+
 }  // namespace
+
+std::vector<std::uint32_t> packing_order(std::vector<std::uint16_t>& indices, std::size_t vertices) {
+  const std::vector<unsigned int> before(indices.begin(), indices.end());
+  std::vector<unsigned int> after(before.size());
+  meshopt_optimizeVertexCache(after.data(), before.data(), before.size(), vertices);
+  std::vector<unsigned int> numbers(vertices);
+  meshopt_optimizeVertexFetchRemap(numbers.data(), after.data(), after.size(), vertices);
+  for (std::size_t i = 0; i < after.size(); ++i) indices[i] = static_cast<std::uint16_t>(numbers[after[i]]);
+  return numbers;
+}
 
 std::string meshopt_encode(std::string_view bytes, std::size_t size, std::size_t count, MeshoptCoding coding) {
   choose_versions();
@@ -50,7 +76,7 @@ std::string meshopt_encode(std::string_view bytes, std::size_t size, std::size_t
     std::vector<std::uint32_t> words;
     const void* from = bytes.data();
     if (has_filter(coding)) {
-      words = filtered(bytes, size * count / sizeof(float), coding == MeshoptCoding::steps ? -12 : 0);
+      words = filtered(bytes, size * count / sizeof(float), exponent_of(coding));
       from = words.data();
     }
     out.resize(meshopt_encodeVertexBufferBound(count, size));

@@ -188,7 +188,7 @@ class ObjectWriter {
                                                                      .count = indices.size()})});
       primitives += ",\"material\":";
       append_number(primitives, std::int64_t{document_.add_material(material_json(
-                                    region_.materials.at(p.material), p.colour, MaterialName::with_colour))});
+                                    region_.materials.at(p.look.material), p.look.colour, MaterialName::with_colour))});
       primitives += '}';
     }
     if (primitives.empty()) return -1;

@@ -188,9 +188,12 @@ TEST_F(GlbDetail, WhatIsWrittenIsSound) {
       const outputs::Glb written = outputs::write_glb(sample_.region(), options(how, compression));
       const Read r = read(written.bytes);
       EXPECT_EQ(r.text(), "");
-      EXPECT_EQ(r.glb.places.size(), wanted_places(sample_.region()));
+      EXPECT_GE(r.glb.places.size(), wanted_places(sample_.region())) << "pieces are more";
+      EXPECT_TRUE(how == Instancing::ext || r.glb.places.size() == wanted_places(sample_.region()));
+      EXPECT_EQ(r.glb.pieces, how == Instancing::ext);
       std::size_t triangles = 0;
-      for (const auto& body : r.glb.triangles) triangles += body.size();
+      for (const auto* list : {&r.glb.triangles, &r.glb.element_triangles})
+        for (const auto& body : *list) triangles += body.size();
       for (const GlbPlace& place : r.glb.places) triangles += r.glb.elements[place.element].triangles.size();
       EXPECT_EQ(triangles, written.triangles);
       for (const model::Point3& p : place_corners(r.glb)) {
@@ -304,6 +307,60 @@ TEST_F(GlbDetail, ElementsAreComparedByPlaceTurnAndColour) {
   Contents other = contents;
   for (auto& [number, element] : other.elements) element.colours = {"#123456"};
   EXPECT_TRUE(compared(other).found(Check::colour_differs, "which it has not")) << compared(other).text();
+}
+
+TEST_F(GlbDetail, PiecesFillTheElementsOfAnotherFormat) {
+  // What nodes show as a whole stands for another format's elements.
+  const Glb whole = read_glb(outputs::write_glb(sample_.region(), options(Instancing::nodes)).bytes, "b.glb"),
+            pieces = read_glb(ext_, "a.glb");
+  Contents contents;
+  for (std::size_t row = 0; row < whole.contents.bodies.size(); ++row) {
+    ReadBody& body = contents.bodies.emplace_back();
+    body.id = whole.contents.bodies[row].id;
+    for (const GlbPlace& place : whole.places)
+      if (place.row == row) {
+        const double length = std::hypot(place.matrix[0], place.matrix[2]);
+        body.detail.placements.push_back(
+            {place.element, placed(place, {0, 0, 0}), {place.matrix[0] / length, -place.matrix[2] / length}});
+      }
+  }
+  for (std::size_t e = 0; e < whole.elements.size(); ++e) {
+    const GlbElement& from = whole.elements[e];
+    ReadElement& to = contents.elements[e];
+    constexpr double kStep = 1.0 / 4096;
+    to.min = {from.min.x * kStep, -from.max.z * kStep, from.min.y * kStep};
+    to.max = {from.max.x * kStep, -from.min.z * kStep, from.max.y * kStep};
+    std::set<std::string> colours;
+    for (const GlbTriangle& t : from.triangles) {
+      char text[8];
+      std::snprintf(text, sizeof(text), "#%02x%02x%02x", t.colour[0], t.colour[1], t.colour[2]);
+      colours.insert(text);
+    }
+    to.colours.assign(colours.begin(), colours.end());
+  }
+  const auto compared = [&](const Contents& other) {
+    Read out;
+    compare_pieces(
+        {other, "a.gml"}, pieces, "a.glb",
+        [](std::span<const model::Point3> in, std::span<model::Point3> to) {
+          std::copy(in.begin(), in.end(), to.begin());
+        },
+        0.01, out.findings);
+    return out;
+  };
+  EXPECT_EQ(compared(contents).text(), "");
+  Contents moved = contents;
+  moved.bodies[0].detail.placements[0].origin.z += 0.1;
+  EXPECT_TRUE(compared(moved).found(Check::geometry_differs, "are not there")) << compared(moved).text();
+  Contents fewer = contents;
+  fewer.bodies[0].detail.placements.clear();
+  EXPECT_TRUE(compared(fewer).found(Check::geometry_differs, "has none")) << compared(fewer).text();
+  Contents wider = contents;
+  for (auto& [number, element] : wider.elements) element.max.x += 0.1;
+  EXPECT_TRUE(compared(wider).found(Check::geometry_differs, "are not there")) << compared(wider).text();
+  Contents other = contents;
+  for (auto& [number, element] : other.elements) element.colours = {"#123456"};
+  EXPECT_TRUE(compared(other).found(Check::colour_differs, "which none has")) << compared(other).text();
 }
 
 TEST_F(GlbDetail, WrongFeatureIds) {

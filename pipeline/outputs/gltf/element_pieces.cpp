@@ -1,0 +1,401 @@
+#include "pipeline/outputs/gltf/element_pieces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "pipeline/model/vector.h"
+
+namespace blockrand::outputs {
+namespace {
+
+using model::ElementPart;
+using model::Point3;
+
+// What things cost in a packed file, about: measured on tiles of three cities.
+constexpr double kPlaceBytes = 6;    ///< translation, rotation, scale and feature of a place
+constexpr double kShapeBytes = 800;  ///< JSON of a shape
+constexpr double kVertexBytes = 8, kTriangleBytes = 1.5;
+
+/// Shapes of whole pieces that a plan has at least, if there are so many, and how the others are tried.
+constexpr std::size_t kFewestWhole = 16, kTrialStep = 4;
+
+/// The cosine of 4 degrees, by which a scaled shape may be shaded otherwise.
+constexpr double kNormalCosine = 0.9976;
+
+constexpr double kFlat = 1e-6;  ///< m; and of unit vectors
+
+std::array<double, 3> values(const Point3& p) { return {p.x, p.y, p.z}; }
+
+/// Without what rounding left.
+Point3 clean_normal(const Point3& n) {
+  const auto clean = [](double v) { return std::fabs(v) < kFlat ? 0.0 : std::fabs(v) > 1 - kFlat ? std::copysign(1.0, v) : v; };
+  return {clean(n.x), clean(n.y), clean(n.z)};
+}
+
+bool along_an_axis(const Point3& n) {
+  return (n.x != 0) + (n.y != 0) + (n.z != 0) == 1;
+}
+
+void settle(Piece& piece) {
+  Point3 min = piece.vertices.front().position, max = min;
+  piece.upright = true;
+  for (const Piece::Vertex& v : piece.vertices) {
+    const Point3& p = v.position;
+    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
+    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+    piece.upright = piece.upright && along_an_axis(v.normal);
+  }
+  const Point3 middle = (min + max) * 0.5;
+  const auto half = [](double low, double high) { return high - low > kFlat ? (high - low) / 2 : 0.0; };
+  piece.half = {half(min.x, max.x), half(min.y, max.y), half(min.z, max.z)};
+  for (Piece::Vertex& v : piece.vertices) v.position = v.position - middle;
+  piece.middle = piece.middle + middle;
+}
+
+enum Kind : std::uint8_t { filling, trim, sill, reveal, kinds };
+
+Kind kind_of(ElementPart part, bool opening) {
+  switch (part) {
+    case ElementPart::frame:
+    case ElementPart::glass:
+    case ElementPart::leaf:
+    case ElementPart::metal:
+    case ElementPart::panel:
+      return filling;
+    case ElementPart::surround:
+      return trim;
+    case ElementPart::sill:
+      return sill;
+    case ElementPart::wall:
+      return opening ? reveal : sill;
+  }
+  return filling;
+}
+
+struct KindOfPiece {
+  Piece piece;
+  Kind kind = filling;
+};
+
+std::vector<KindOfPiece> pieces_of(const model::ColouredElement& element, const ElementGeometry& geometry) {
+  const bool opening = !element.element->opening.outline.empty();
+  std::vector<KindOfPiece> out;
+  for (int kind = 0; kind < kinds; ++kind) {
+    Piece piece;
+    const auto end = [&] {
+      if (piece.indices.empty()) return;
+      settle(piece);
+      out.push_back({std::move(piece), static_cast<Kind>(kind)});
+      piece = {};
+    };
+    for (const ElementGeometry::PartTriangles& part : geometry.parts) {
+      if (kind_of(part.part, opening) != kind) continue;
+      if (piece.vertices.size() + part.vertices.size() > ElementGeometry::kMostVertices) end();
+      const auto first = static_cast<std::uint32_t>(piece.vertices.size());
+      const model::PartMaterial& look = element.materials[static_cast<std::size_t>(part.part)];
+      for (const ElementVertex& v : part.vertices) piece.vertices.push_back({v.position, clean_normal(v.exact_normal), look});
+      for (const std::uint32_t i : part.indices) piece.indices.push_back(first + i);
+    }
+    end();
+  }
+  return out;
+}
+
+/// Parts that share no corner, each in one look.
+std::vector<Piece> connected_parts(const Piece& piece) {
+  std::vector<std::uint32_t> root(piece.vertices.size());
+  std::iota(root.begin(), root.end(), 0u);
+  const auto find = [&](std::uint32_t i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+  };
+  const auto join = [&](std::uint32_t a, std::uint32_t b) {
+    a = find(a), b = find(b);
+    root[std::max(a, b)] = std::min(a, b);
+  };
+  for (std::size_t t = 0; t + 2 < piece.indices.size(); t += 3)
+    join(piece.indices[t], piece.indices[t + 1]), join(piece.indices[t], piece.indices[t + 2]);
+  std::vector<std::uint32_t> order(piece.vertices.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto key = [&](std::uint32_t i) {
+    const Piece::Vertex& v = piece.vertices[i];
+    return std::tuple(v.look.material, v.look.colour, v.position);
+  };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return std::pair(key(a), a) < std::pair(key(b), b); });
+  for (std::size_t i = 1; i < order.size(); ++i)
+    if (key(order[i - 1]) == key(order[i])) join(order[i - 1], order[i]);
+
+  std::vector<Piece> out;
+  std::vector<std::uint32_t> part_of(piece.vertices.size(), model::kNoIndex), index(piece.vertices.size());
+  std::vector<bool> used(piece.vertices.size(), false);
+  for (const std::uint32_t i : piece.indices) used[i] = true;
+  for (std::uint32_t i = 0; i < piece.vertices.size(); ++i) {
+    if (!used[i]) continue;
+    const std::uint32_t r = find(i);
+    if (part_of[r] == model::kNoIndex) {
+      part_of[r] = static_cast<std::uint32_t>(out.size());
+      out.emplace_back();
+    }
+    Piece& part = out[part_of[r]];
+    index[i] = static_cast<std::uint32_t>(part.vertices.size());
+    part.vertices.push_back(piece.vertices[i]);
+  }
+  for (const std::uint32_t i : piece.indices) out[part_of[find(i)]].indices.push_back(index[i]);
+  for (Piece& part : out) {
+    part.middle = piece.middle;
+    settle(part);
+  }
+  return out;
+}
+
+/// The scale along the axes that makes `piece` of `shape`; nothing where none does.
+std::optional<Point3> scale_to(const Piece& piece, const Piece& shape, double tolerance) {
+  std::array<double, 3> scale{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double to = values(piece.half)[k], from = values(shape.half)[k];
+    if ((to > 0) != (from > 0)) return std::nullopt;
+    scale[k] = from > 0 ? to / from : 1;
+  }
+  for (std::size_t i = 0; i < piece.vertices.size(); ++i) {
+    const Point3 &p = piece.vertices[i].position, &q = shape.vertices[i].position;
+    if (!(std::fabs(q.x * scale[0] - p.x) <= tolerance && std::fabs(q.y * scale[1] - p.y) <= tolerance &&
+          std::fabs(q.z * scale[2] - p.z) <= tolerance))
+      return std::nullopt;
+  }
+  const bool turns = !(piece.upright && shape.upright);
+  for (std::size_t i = 0; i < piece.vertices.size(); ++i) {
+    const Point3 &n = piece.vertices[i].normal, &m = shape.vertices[i].normal;
+    // Some viewers scale normals as they do positions, others by the inverse as they should.
+    const Point3 wrong{m.x * scale[0], m.y * scale[1], m.z * scale[2]}, right{m.x / scale[0], m.y / scale[1], m.z / scale[2]};
+    if (!turns ? dot(n, m) < kNormalCosine
+               : !(dot(n, wrong) >= kNormalCosine * length(wrong) && dot(n, right) >= kNormalCosine * length(right)))
+      return std::nullopt;
+  }
+  return Point3{scale[0], scale[1], scale[2]};
+}
+
+/// A piece of the elements of a group.
+struct Use {
+  std::size_t group = 0;  ///< into the groups
+  Piece piece;
+  std::size_t shape = 0;
+  Point3 scale{1, 1, 1};
+  std::vector<std::size_t> parts;  ///< uses of the parts that it consists of
+};
+
+/// Finds shapes that pieces have in common.
+class Shapes {
+ public:
+  struct Shape {
+    std::size_t first = 0;  ///< the use that it looks like
+    std::size_t places = 0;
+  };
+  /// Sets the shape and scale of uses[number].
+  void find(std::vector<Use>& uses, std::size_t number, double tolerance) {
+    Use& use = uses[number];
+    std::vector<std::size_t>& like = by_form_[form(use.piece)];
+    for (const std::size_t s : like)
+      if (const auto scale = scale_to(use.piece, uses[list[s].first].piece, tolerance)) {
+        use.shape = s;
+        use.scale = *scale;
+        return;
+      }
+    use.shape = list.size();
+    like.push_back(use.shape);
+    list.push_back({number, 0});
+  }
+  std::vector<Shape> list;
+
+ private:
+  static std::string form(const Piece& piece) {
+    std::string key;
+    const auto add = [&](const auto& value) { key.append(reinterpret_cast<const char*>(&value), sizeof(value)); };
+    add(piece.vertices.size());
+    for (const std::uint32_t i : piece.indices) add(i);
+    const model::PartMaterial* last = nullptr;
+    for (std::size_t i = 0; i < piece.vertices.size(); ++i) {
+      const model::PartMaterial& look = piece.vertices[i].look;
+      if (last && *last == look) continue;
+      last = &look;
+      add(i), add(look.material), add(look.colour.r), add(look.colour.g), add(look.colour.b);
+    }
+    return key;
+  }
+  std::map<std::string, std::vector<std::size_t>> by_form_;
+};
+
+double baked_bytes(const Piece& piece) {
+  return kVertexBytes * static_cast<double>(piece.vertices.size()) +
+         kTriangleBytes * static_cast<double>(piece.triangles());
+}
+
+/// What a shape saves when it is placed.
+double saved(const Piece& piece, std::size_t places) {
+  return (baked_bytes(piece) - kPlaceBytes) * static_cast<double>(places) - kShapeBytes - baked_bytes(piece);
+}
+
+class Planner {
+ public:
+  Planner(const model::Region& region, const std::vector<InstanceGroup>& groups) : groups_(groups) {
+    std::vector<std::pair<std::size_t, std::vector<KindOfPiece>>> all;
+    std::vector<std::size_t> weight(groups.size(), 0), order;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const model::ColouredElement& element = region.elements.at(groups[g].element);
+      auto pieces = pieces_of(element, element_geometry(*element.element, true));
+      for (const KindOfPiece& p : pieces) weight[g] += p.piece.triangles() * groups[g].instances.size();
+      if (!pieces.empty()) order.push_back(all.size());
+      all.emplace_back(g, std::move(pieces));
+    }
+    // The most popular first: others are told as they are.
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return weight[a] > weight[b]; });
+    for (const std::size_t i : order)
+      for (KindOfPiece& p : all[i].second) {
+        uses_.push_back({all[i].first, std::move(p.piece), 0, {1, 1, 1}, {}});
+        whole_.find(uses_, uses_.size() - 1, p.kind == reveal ? kRevealTolerance : kPieceTolerance);
+        whole_.list[uses_.back().shape].places += places(uses_.back());
+      }
+  }
+
+  PiecePlan plan(std::size_t most) {
+    std::vector<std::size_t> rank(whole_.list.size()), of_rank(whole_.list.size());
+    std::iota(of_rank.begin(), of_rank.end(), std::size_t{0});
+    sort_by_saved(of_rank, whole_, uses_);
+    for (std::size_t i = 0; i < of_rank.size(); ++i) rank[of_rank[i]] = i;
+    const std::size_t fewest = std::min(kFewestWhole, most);
+    divide(rank, fewest);
+
+    std::size_t best = 0;
+    double best_bytes = 0;
+    std::vector<std::size_t> best_parts;
+    for (std::size_t n = fewest;; n = std::min(n + kTrialStep, most)) {
+      std::size_t whole = std::min(n, of_rank.size());
+      double bytes = 0;
+      while (whole > 0 && saved_by(whole_, uses_, of_rank[whole - 1]) <= 0) --whole;
+      for (std::size_t i = 0; i < whole; ++i) {
+        const Shapes::Shape& s = whole_.list[of_rank[i]];
+        bytes += baked_bytes(uses_[s.first].piece) + kShapeBytes + kPlaceBytes * static_cast<double>(s.places);
+      }
+      for (Shapes::Shape& s : part_.list) s.places = 0;
+      for (const Use& use : uses_)
+        if (rank[use.shape] >= whole)
+          for (const std::size_t p : use.parts) {
+            part_.list[parts_[p].shape].places += places(use);
+            bytes += baked_bytes(parts_[p].piece) * static_cast<double>(places(use));
+          }
+      std::vector<std::size_t> parts(part_.list.size());
+      std::iota(parts.begin(), parts.end(), std::size_t{0});
+      sort_by_saved(parts, part_, parts_);
+      if (parts.size() > most - whole) parts.resize(most - whole);
+      while (!parts.empty() && saved_by(part_, parts_, parts.back()) <= 0) parts.pop_back();
+      for (const std::size_t p : parts) bytes -= saved_by(part_, parts_, p);
+      if (n == fewest || bytes < best_bytes) {
+        best = whole;
+        best_bytes = bytes;
+        best_parts = std::move(parts);
+      }
+      if (n == most) break;
+    }
+    return make(rank, best, best_parts);
+  }
+
+ private:
+  std::size_t places(const Use& use) const { return groups_[use.group].instances.size(); }
+
+  static double saved_by(const Shapes& shapes, const std::vector<Use>& uses, std::size_t shape) {
+    return saved(uses[shapes.list[shape].first].piece, shapes.list[shape].places);
+  }
+  static void sort_by_saved(std::vector<std::size_t>& order, const Shapes& shapes, const std::vector<Use>& uses) {
+    std::vector<double> by;
+    for (std::size_t s = 0; s < shapes.list.size(); ++s) by.push_back(saved_by(shapes, uses, s));
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return by[a] > by[b]; });
+  }
+
+  /// Finds the parts of what some plan may not place as a whole.
+  void divide(const std::vector<std::size_t>& rank, std::size_t fewest) {
+    for (std::size_t u = 0; u < uses_.size(); ++u) {
+      Use& use = uses_[u];
+      if (rank[use.shape] < fewest && saved_by(whole_, uses_, use.shape) > 0) continue;
+      for (Piece& part : connected_parts(use.piece)) {
+        use.parts.push_back(parts_.size());
+        parts_.push_back({use.group, std::move(part), 0, {1, 1, 1}, {}});
+        part_.find(parts_, parts_.size() - 1, kRevealTolerance);
+      }
+    }
+  }
+
+  void add_places(PlacedPiece& to, const Use& use) const {
+    for (const ElementInstance& at : groups_[use.group].instances)
+      to.places.push_back({&at, use.piece.middle, use.scale});
+  }
+
+  PiecePlan make(const std::vector<std::size_t>& rank, std::size_t whole, const std::vector<std::size_t>& parts) {
+    PiecePlan out;
+    std::vector<std::size_t> number(part_.list.size(), model::kNoIndex);
+    std::vector<std::size_t> whole_number(whole_.list.size(), model::kNoIndex);
+    out.placed.resize(whole + parts.size());
+    for (std::size_t s = 0; s < rank.size(); ++s)
+      if (rank[s] < whole) out.placed[rank[s]].shape = uses_[whole_.list[s].first].piece;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      number[parts[i]] = whole + i;
+      out.placed[whole + i].shape = parts_[part_.list[parts[i]].first].piece;
+    }
+    for (const Use& use : uses_) {
+      if (rank[use.shape] < whole) {
+        add_places(out.placed[rank[use.shape]], use);
+        continue;
+      }
+      for (const std::size_t p : use.parts) {
+        if (number[parts_[p].shape] != model::kNoIndex)
+          add_places(out.placed[number[parts_[p].shape]], parts_[p]);
+        else
+          out.baked.push_back({std::move(parts_[p].piece), &groups_[use.group].instances});
+      }
+    }
+    for (PlacedPiece& p : out.placed) sort_places(p.places);
+    return out;
+  }
+
+  /// Windows above each other follow each other: a place then differs from the one before in its height alone.
+  static void sort_places(std::vector<PlacedPiece::Place>& places) {
+    struct Keyed {
+      std::uint32_t feature;
+      double east, north;
+      std::int64_t along, out, up;  // mm
+      PlacedPiece::Place place;
+    };
+    std::vector<Keyed> keyed;
+    keyed.reserve(places.size());
+    for (const PlacedPiece::Place& p : places) {
+      const PieceTurn turn(p.at->along);
+      const Point3 d = turn(p.middle);
+      const model::Point2 at{p.at->origin.x + d.x, p.at->origin.y + d.y};
+      const auto mm = [](double v) { return static_cast<std::int64_t>(std::nearbyint(v * 1000)); };
+      keyed.push_back({p.at->feature, p.at->along.x, p.at->along.y, mm(dot(at, turn.along)), mm(dot(at, turn.out)),
+                       mm(p.at->origin.z + d.z), p});
+    }
+    std::stable_sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
+      return std::tie(a.feature, a.east, a.north, a.along, a.out, a.up) <
+             std::tie(b.feature, b.east, b.north, b.along, b.out, b.up);
+    });
+    for (std::size_t i = 0; i < places.size(); ++i) places[i] = keyed[i].place;
+  }
+
+  const std::vector<InstanceGroup>& groups_;
+  std::vector<Use> uses_, parts_;
+  Shapes whole_, part_;
+};
+
+}  // namespace
+
+PiecePlan plan_pieces(const model::Region& region, const std::vector<InstanceGroup>& groups, std::size_t most) {
+  return Planner(region, groups).plan(most);
+}
+
+}  // namespace blockrand::outputs

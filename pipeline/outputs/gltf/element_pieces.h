@@ -1,0 +1,72 @@
+// Elements of a tile in pieces that few draws show: which pieces are placed, and which become part of the tile's mesh.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/model/region.h"
+#include "pipeline/outputs/gltf/element_geometry.h"
+
+namespace blockrand::outputs {
+
+/// What one draw shows of an element: the filling of an opening, its reveal, its trim, its sill; or a connected part of
+/// these in one look. About its middle, in the axes of the element.
+struct Piece {
+  struct Vertex {
+    model::Point3 position;  ///< m
+    model::Point3 normal;    ///< unit vector
+    model::PartMaterial look;
+  };
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;  ///< counter-clockwise triangles
+  model::Point3 middle;                ///< m, in the element's frame
+  model::Point3 half;                  ///< m, half of its size; 0 where it is flat
+  bool upright = false;                ///< all normals lie along an axis: a scale along the axes turns none
+
+  std::size_t triangles() const { return indices.size() / 3; }
+};
+
+/// m. A placed piece is another one scaled along its axes. Its ends are exact, and a corner between them, the edge of a
+/// glazing bar, lies no farther than this from its place.
+inline constexpr double kPieceTolerance = 0.03;
+/// m. The same for reveals, which meet the hole in the wall.
+inline constexpr double kRevealTolerance = 0.0005;
+
+/// A shape that is placed.
+struct PlacedPiece {
+  struct Place {
+    const ElementInstance* at = nullptr;
+    model::Point3 middle;  ///< m, in the element's frame
+    model::Point3 scale;   ///< along the element's axes; 1 along an axis in which the shape is flat
+  };
+  Piece shape;
+  std::vector<Place> places;  ///< by feature, along each wall from left to right, from below
+};
+
+/// A piece that is part of the mesh, at all places.
+struct BakedPiece {
+  Piece piece;
+  const std::vector<ElementInstance>* places = nullptr;
+};
+
+struct PiecePlan {
+  std::vector<PlacedPiece> placed;  ///< those that save the most bytes first
+  std::vector<BakedPiece> baked;
+};
+
+/// Divides elements into pieces and finds equal ones, so that at most `most` shapes are placed and the file is small:
+/// popular pieces are shapes, what is left is divided into connected parts, of which the popular ones (a bar, a board)
+/// are shapes again, and the rest is baked. \param groups  must outlive the plan
+PiecePlan plan_pieces(const model::Region& region, const std::vector<InstanceGroup>& groups, std::size_t most);
+
+/// A place and direction of a piece in east, north, up.
+struct PieceTurn {
+  model::Point2 along, out;
+  explicit PieceTurn(const model::Point2& right) : along(right), out{right.y, -right.x} {}
+  model::Point3 operator()(const model::Point3& p) const {
+    return {along.x * p.x + out.x * p.z, along.y * p.x + out.y * p.z, p.y};
+  }
+};
+
+}  // namespace blockrand::outputs
