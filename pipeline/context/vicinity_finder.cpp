@@ -7,9 +7,40 @@
 
 namespace blockrand::context {
 
+std::unique_ptr<KeptLabels> KeptLabels::of(std::size_t buildings) {
+  if (buildings > kMostBuildings) return nullptr;
+  auto out = std::make_unique<KeptLabels>();
+  out->labels_.resize(buildings);
+  return out;
+}
+
+void KeptLabels::put(std::uint32_t number, const model::Building& building) {
+  auto labels = std::make_unique<Labels>(Labels{building.edges, building.trees, building.situation});
+  const std::lock_guard lock(mutex_);
+  labels_[number] = std::move(labels);
+}
+
+bool KeptLabels::take(std::uint32_t number, model::Building& building) {
+  std::unique_ptr<Labels> labels;
+  {
+    const std::lock_guard lock(mutex_);
+    labels = std::move(labels_[number]);
+  }
+  if (!labels) return false;
+  building.edges = std::move(labels->edges);
+  building.trees = std::move(labels->trees);
+  building.situation = std::move(labels->situation);
+  return true;
+}
+
 VicinityFinder::VicinityFinder(const model::Extract& extract, const footprints::FootprintStore& footprints,
-                               const ContextExtract& context)
-    : extract_(extract), footprints_(footprints), context_(context), buildings_(footprints::index_of(footprints)) {
+                               const ContextExtract& context, KeptLabels* kept, Labels use)
+    : extract_(extract),
+      footprints_(footprints),
+      context_(context),
+      kept_(kept),
+      use_(use),
+      buildings_(footprints::index_of(footprints)) {
   std::vector<geometry::PlanBox> boxes;
   for (const context::NetworkLine& line : context.lines) boxes.push_back(geometry::box_of(line.points));
   lines_ = geometry::BoxIndex(std::move(boxes));
@@ -75,9 +106,44 @@ FoundVicinity VicinityFinder::vicinity_of(const geometry::PlanBox& box) const {
   return found;
 }
 
+namespace {
+
+bool same_ring(const model::Ring& a, const model::Ring& b) { return a.points == b.points && a.nodes == b.nodes; }
+
+bool same_polygon(const model::Polygon& a, const model::Polygon& b) {
+  return same_ring(a.outer, b.outer) &&
+         std::equal(a.holes.begin(), a.holes.end(), b.holes.begin(), b.holes.end(), same_ring);
+}
+
+bool same_arc(const model::Arc& a, const model::Arc& b) {
+  return a.polygon == b.polygon && a.ring == b.ring && a.first == b.first && a.count == b.count;
+}
+
+}  // namespace
+
+bool VicinityFinder::is_as_stored(const model::Building& building, std::uint32_t number) const {
+  const std::vector<model::Polygon> outline = footprints_.polygons(number);
+  const std::vector<model::Arc> arcs = footprints_.arcs(number);
+  return building.osm == footprints_[number].id &&
+         std::equal(outline.begin(), outline.end(), building.outline.begin(), building.outline.end(), same_polygon) &&
+         std::equal(arcs.begin(), arcs.end(), building.arcs.begin(), building.arcs.end(), same_arc) &&
+         address_street(extract_, building.tags) ==
+             address_street(extract_, extract_.buildings[footprints_[number].lead].tags);
+}
+
 void VicinityFinder::label_wall_segments(model::Region& region, std::span<const std::uint32_t> numbers) const {
+  std::vector<model::Building*> open;
+  std::vector<std::uint32_t> open_numbers;
+  for (std::size_t i = 0; i < region.buildings.size(); ++i) {
+    model::Building& building = region.buildings[i];
+    if (kept_ && use_ == Labels::take && is_as_stored(building, numbers[i]) && kept_->take(numbers[i], building))
+      continue;
+    open.push_back(&building);
+    open_numbers.push_back(numbers[i]);
+  }
+  if (open.empty()) return;
   geometry::PlanBox box;
-  for (const std::uint32_t n : numbers) box.include(footprints_[n].box);
+  for (const std::uint32_t n : open_numbers) box.include(footprints_[n].box);
   if (box.empty()) return;
   const FoundVicinity found = vicinity_of(box);
   const context::VicinityIndex index({.footprints = found.footprints,
@@ -87,8 +153,10 @@ void VicinityFinder::label_wall_segments(model::Region& region, std::span<const 
                                       .passages = found.passages,
                                       .points = found.points,
                                       .addresses = found.addresses});
-  for (model::Building& building : region.buildings)
-    context::label_wall_segments(building, index, context::address_street(extract_, building.tags));
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    context::label_wall_segments(*open[i], index, context::address_street(extract_, open[i]->tags));
+    if (kept_ && use_ == Labels::fill) kept_->put(open_numbers[i], *open[i]);
+  }
 }
 
 }  // namespace blockrand::context

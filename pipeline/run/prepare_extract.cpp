@@ -118,9 +118,12 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
       for (std::uint32_t i = 0; i < shards[shard].seeds.size(); ++i) asked.push_back(repaired.first[shard] + i);
     needed = evidence::needed_for(asked, repaired.footprints, context, tables);
   }
-  evidence::FactsExtract facts = evidence::facts_extract(extract, repaired.footprints, repaired.first, context,
-                                                         context::VicinityFinder(extract, repaired.footprints, context),
-                                                         workers, progress, memo, needed);
+  std::unique_ptr<context::KeptLabels> labels = context::KeptLabels::of(repaired.footprints.size());
+  evidence::FactsExtract facts =
+      evidence::facts_extract(extract, repaired.footprints, repaired.first, context,
+                              context::VicinityFinder(extract, repaired.footprints, context, labels.get(),
+                                                      context::VicinityFinder::Labels::fill),
+                              workers, progress, memo, needed);
   evidence::TagFacts tags =
       evidence::tag_facts(extract, repaired.footprints, context, tables, located.projection, facts);
   base::give_memory_back();
@@ -134,6 +137,7 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
           .context = std::move(context),
           .facts = std::move(facts),
           .tags = std::move(tags),
+          .labels = std::move(labels),
           .styles = std::move(styles)};
 }
 

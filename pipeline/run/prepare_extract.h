@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -53,6 +54,7 @@ struct PreparedExtract {
   context::ContextExtract context;
   evidence::FactsExtract facts;
   evidence::TagFacts tags;
+  std::unique_ptr<context::KeptLabels> labels;  ///< of quarters; null: tiles look at walls themselves
   evidence::StyleExtract styles;
 };
 
