@@ -2,18 +2,44 @@
 
 #include <algorithm>
 #include <map>
-#include <utility>
 
 #include "pipeline/context/wall_segments.h"
 
 namespace blockrand::context {
 
+std::unique_ptr<KeptLabels> KeptLabels::of(std::size_t buildings) {
+  if (buildings > kMostBuildings) return nullptr;
+  auto out = std::make_unique<KeptLabels>();
+  out->labels_.resize(buildings);
+  return out;
+}
+
+void KeptLabels::put(std::uint32_t number, const model::Building& building) {
+  auto labels = std::make_unique<Labels>(Labels{building.edges, building.trees, building.situation});
+  const std::lock_guard lock(mutex_);
+  labels_[number] = std::move(labels);
+}
+
+bool KeptLabels::take(std::uint32_t number, model::Building& building) {
+  std::unique_ptr<Labels> labels;
+  {
+    const std::lock_guard lock(mutex_);
+    labels = std::move(labels_[number]);
+  }
+  if (!labels) return false;
+  building.edges = std::move(labels->edges);
+  building.trees = std::move(labels->trees);
+  building.situation = std::move(labels->situation);
+  return true;
+}
+
 VicinityFinder::VicinityFinder(const model::Extract& extract, const footprints::FootprintStore& footprints,
-                               const ContextExtract& context, std::shared_ptr<LabelledBuildings> labelled)
+                               const ContextExtract& context, KeptLabels* kept, Labels use)
     : extract_(extract),
       footprints_(footprints),
       context_(context),
-      labelled_(std::move(labelled)),
+      kept_(kept),
+      use_(use),
       buildings_(footprints::index_of(footprints)) {
   std::vector<geometry::PlanBox> boxes;
   for (const context::NetworkLine& line : context.lines) boxes.push_back(geometry::box_of(line.points));
@@ -80,14 +106,44 @@ FoundVicinity VicinityFinder::vicinity_of(const geometry::PlanBox& box) const {
   return found;
 }
 
+namespace {
+
+bool same_ring(const model::Ring& a, const model::Ring& b) { return a.points == b.points && a.nodes == b.nodes; }
+
+bool same_polygon(const model::Polygon& a, const model::Polygon& b) {
+  return same_ring(a.outer, b.outer) &&
+         std::equal(a.holes.begin(), a.holes.end(), b.holes.begin(), b.holes.end(), same_ring);
+}
+
+bool same_arc(const model::Arc& a, const model::Arc& b) {
+  return a.polygon == b.polygon && a.ring == b.ring && a.first == b.first && a.count == b.count;
+}
+
+}  // namespace
+
+bool VicinityFinder::is_as_stored(const model::Building& building, std::uint32_t number) const {
+  const std::vector<model::Polygon> outline = footprints_.polygons(number);
+  const std::vector<model::Arc> arcs = footprints_.arcs(number);
+  return building.osm == footprints_[number].id &&
+         std::equal(outline.begin(), outline.end(), building.outline.begin(), building.outline.end(), same_polygon) &&
+         std::equal(arcs.begin(), arcs.end(), building.arcs.begin(), building.arcs.end(), same_arc) &&
+         address_street(extract_, building.tags) ==
+             address_street(extract_, extract_.buildings[footprints_[number].lead].tags);
+}
+
 void VicinityFinder::label_wall_segments(model::Region& region, std::span<const std::uint32_t> numbers) const {
-  geometry::PlanBox box;
-  std::vector<std::size_t> unknown;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (labelled_ && labelled_->recall(numbers[i], region.buildings[i])) continue;
-    box.include(footprints_[numbers[i]].box);
-    unknown.push_back(i);
+  std::vector<model::Building*> open;
+  std::vector<std::uint32_t> open_numbers;
+  for (std::size_t i = 0; i < region.buildings.size(); ++i) {
+    model::Building& building = region.buildings[i];
+    if (kept_ && use_ == Labels::take && is_as_stored(building, numbers[i]) && kept_->take(numbers[i], building))
+      continue;
+    open.push_back(&building);
+    open_numbers.push_back(numbers[i]);
   }
+  if (open.empty()) return;
+  geometry::PlanBox box;
+  for (const std::uint32_t n : open_numbers) box.include(footprints_[n].box);
   if (box.empty()) return;
   const FoundVicinity found = vicinity_of(box);
   const context::VicinityIndex index({.footprints = found.footprints,
@@ -97,38 +153,10 @@ void VicinityFinder::label_wall_segments(model::Region& region, std::span<const 
                                       .passages = found.passages,
                                       .points = found.points,
                                       .addresses = found.addresses});
-  for (const std::size_t i : unknown) {
-    model::Building& building = region.buildings[i];
-    context::label_wall_segments(building, index, context::address_street(extract_, building.tags));
-    if (labelled_) labelled_->keep(numbers[i], building);
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    context::label_wall_segments(*open[i], index, context::address_street(extract_, open[i]->tags));
+    if (kept_ && use_ == Labels::fill) kept_->put(open_numbers[i], *open[i]);
   }
-}
-
-bool LabelledBuildings::recall(std::uint32_t number, model::Building& building) const {
-  std::string_view bytes;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto found = packed_.find(number);
-    if (found == packed_.end()) return false;
-    bytes = found->second;  // it stays where it is
-  }
-  base::Unpacker in(bytes);
-  model::OsmId id;
-  model::Range tags;
-  in >> id >> tags;
-  if (id != building.osm || tags.first != building.tags.first || tags.count != building.tags.count) return false;
-  in >> building.edges >> building.situation >> building.trees;
-  return true;
-}
-
-void LabelledBuildings::keep(std::uint32_t number, const model::Building& building) {
-  base::Packer out;
-  out << building.osm << building.tags << building.edges << building.situation << building.trees;
-  out.bytes.shrink_to_fit();
-  const std::lock_guard lock(mutex_);
-  if (bytes_ + out.bytes.size() > kMostBytes) return;
-  bytes_ += out.bytes.size();
-  packed_.try_emplace(number, std::move(out.bytes));
 }
 
 }  // namespace blockrand::context

@@ -5,8 +5,6 @@
 #include <memory>
 #include <mutex>
 #include <span>
-#include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "pipeline/base/pack.h"
@@ -32,30 +30,37 @@ struct FoundVicinity {
 /// Everything of it that does not number things in this run alone.
 void pack(const FoundVicinity& found, base::Packer& out);
 
-/// What label_wall_segments() found of buildings, for those who ask again: buildings are labelled to be measured, then with their tile,
-/// and a few as neighbours of another. Safe to share between threads.
-class LabelledBuildings {
+/// Labels of buildings from the time when they were measured until their tile takes them over: what the walls of a quarter
+/// see is looked at once. Those of a city do not fit into memory. Safe to share between threads.
+class KeptLabels {
  public:
-  /// What is found anew costs a millisecond a building and no memory.
-  static constexpr std::size_t kMostBytes = 32'000'000;
+  /// Some 3 KB each.
+  static constexpr std::size_t kMostBuildings = 10000;
+  /// \return null for more than kMostBuildings
+  static std::unique_ptr<KeptLabels> of(std::size_t buildings);
 
-  /// Puts in what is known of a building of the store. \returns whether it is
-  bool recall(std::uint32_t number, model::Building& building) const;
-  /// Keeps what is known, while there is room.
-  void keep(std::uint32_t number, const model::Building& building);
+  /// Copies what label_wall_segments() wrote.
+  void put(std::uint32_t number, const model::Building& building);
+  /// Hands the labels over, once. \return whether there were any
+  bool take(std::uint32_t number, model::Building& building);
 
  private:
-  mutable std::mutex mutex_;
-  std::unordered_map<std::uint32_t, std::string> packed_;
-  std::size_t bytes_ = 0;
+  struct Labels {
+    std::vector<model::WallSegment> edges;
+    std::vector<model::NearTree> trees;
+    model::BuildingSituation situation;
+  };
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Labels>> labels_;  ///< by number; null: none, or taken
 };
 
-/// Read-only after construction but for what it keeps, safe to share between threads; keeps references to what it is made of.
+/// Read-only after construction, safe to share between threads; keeps references to what it is made of.
 class VicinityFinder {
  public:
-  /// \param labelled  shared with others of the same extract, footprints and context; null: nothing is kept
+  /// \param kept  is filled by the first who labels, or emptied by the second; null: each labels
+  enum class Labels : std::uint8_t { fill, take };
   VicinityFinder(const model::Extract& extract, const footprints::FootprintStore& footprints,
-                 const ContextExtract& context, std::shared_ptr<LabelledBuildings> labelled = nullptr);
+                 const ContextExtract& context, KeptLabels* kept = nullptr, Labels use = Labels::take);
 
   /// Labels the edges of a region's buildings (context::label_wall_segments) with everything around them in view.
   /// \param numbers  of the region's buildings in the store, in their order
@@ -70,10 +75,14 @@ class VicinityFinder {
   }
 
  private:
+  /// Whether labels of the outline in the store are labels of the building.
+  bool is_as_stored(const model::Building& building, std::uint32_t number) const;
+
   const model::Extract& extract_;
   const footprints::FootprintStore& footprints_;
   const ContextExtract& context_;
-  std::shared_ptr<LabelledBuildings> labelled_;  ///< null: everything is found anew
+  KeptLabels* kept_;
+  Labels use_;
   geometry::BoxIndex buildings_, lines_, passages_, points_, blocks_, courtyards_;
 };
 

@@ -76,6 +76,7 @@ class Scene {
   static constexpr double kOnTheWall = 0.05;
 
  private:
+  static constexpr std::uint32_t kAtOnce = 32;
   static constexpr double kCell = 5;  ///< m. Smaller cells cost more steps than they save tests
   void add_streets(std::span<const NetworkLine> lines);
   std::int64_t column(double x) const;
@@ -97,8 +98,9 @@ class Scene {
   std::vector<StreetPiece> streets_;
   std::vector<Sort> sort_;  ///< by footprint
   std::int64_t first_column_ = 0, first_row_ = 0, columns_ = 0, rows_ = 0;
-  std::vector<std::uint32_t> starts_;  ///< per cell, row by row
-  std::vector<Item> items_;            ///< walls, then streets, ascending within a cell
+  std::vector<std::uint32_t> starts_;      ///< per cell, row by row
+  std::vector<Item> items_;                ///< walls, then streets, ascending within a cell
+  std::vector<double> ax_, ay_, bx_, by_;  ///< their ends once more: a ray's sides of several are told at once
 };
 
 /// Rays of a fan over the half plane before a wall: 13 at steps of 13.5 degrees, from 81 degrees right to 81 left.

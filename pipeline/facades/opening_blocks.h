@@ -3,9 +3,10 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
+#include <unordered_map>
 #include <vector>
 
+#include "pipeline/base/random.h"
 #include "pipeline/facades/outlines.h"
 #include "pipeline/facades/wall_frame.h"
 #include "pipeline/geometry/box_index.h"
@@ -44,10 +45,10 @@ class GrowingCells {
       if (visit(item)) return true;
     for (std::int64_t x = range.low[0]; x <= range.high[0]; ++x)
       for (std::int64_t y = range.low[1]; y <= range.high[1]; ++y)
-        for (auto cell = cells_.lower_bound({x, y, range.low[2]});
-             cell != cells_.end() && cell->first <= Cell{x, y, range.high[2]}; ++cell)
-          for (const std::uint32_t item : cell->second)
-            if (visit(item)) return true;
+        for (std::int64_t z = range.low[2]; z <= range.high[2]; ++z)
+          if (const auto cell = cells_.find({x, y, z}); cell != cells_.end())
+            for (const std::uint32_t item : cell->second)
+              if (visit(item)) return true;
     return false;
   }
 
@@ -56,9 +57,15 @@ class GrowingCells {
   struct Range {
     Cell low, high;
   };
+  struct Hash {
+    std::size_t operator()(const Cell& c) const {
+      return base::mix64(base::mix64(base::mix64(static_cast<std::uint64_t>(c[0])) ^ static_cast<std::uint64_t>(c[1])) ^
+                         static_cast<std::uint64_t>(c[2]));
+    }
+  };
   static Range range_of(const Box2& box, double low, double high, double distance);
 
-  std::map<Cell, std::vector<std::uint32_t>> cells_;
+  std::unordered_map<Cell, std::vector<std::uint32_t>, Hash> cells_;
   std::vector<std::uint32_t> long_ones_;  ///< of very many cells: tunnels through whole blocks
 };
 

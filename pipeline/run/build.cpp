@@ -316,7 +316,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   record.repair = repaired.totals;
   record.facts = located.facts;
   imagery.tell(record);
-  const context::VicinityFinder vicinity(extract, repaired.footprints, context, prepared.labelled);
+  const context::VicinityFinder vicinity(extract, repaired.footprints, context, prepared.labels.get());
   const footprints::RoofLineFinder roof_lines(extract, projection);
   const footprints::BuildingNumbers numbers(repaired.footprints);
   const context::TaggedNeighbours neighbours(attributes::tagged_buildings(extract, inputs.defaults, projection),

@@ -118,10 +118,12 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
       for (std::uint32_t i = 0; i < shards[shard].seeds.size(); ++i) asked.push_back(repaired.first[shard] + i);
     needed = evidence::needed_for(asked, repaired.footprints, context, tables);
   }
-  auto labelled = std::make_shared<context::LabelledBuildings>();
-  evidence::FactsExtract facts = evidence::facts_extract(extract, repaired.footprints, repaired.first, context,
-                                                         context::VicinityFinder(extract, repaired.footprints, context, labelled),
-                                                         workers, progress, memo, needed);
+  std::unique_ptr<context::KeptLabels> labels = context::KeptLabels::of(repaired.footprints.size());
+  evidence::FactsExtract facts =
+      evidence::facts_extract(extract, repaired.footprints, repaired.first, context,
+                              context::VicinityFinder(extract, repaired.footprints, context, labels.get(),
+                                                      context::VicinityFinder::Labels::fill),
+                              workers, progress, memo, needed);
   evidence::TagFacts tags =
       evidence::tag_facts(extract, repaired.footprints, context, tables, located.projection, facts);
   base::give_memory_back();
@@ -133,9 +135,9 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
           .kept = std::move(kept),
           .repaired = std::move(repaired),
           .context = std::move(context),
-          .labelled = std::move(labelled),
           .facts = std::move(facts),
           .tags = std::move(tags),
+          .labels = std::move(labels),
           .styles = std::move(styles)};
 }
 

@@ -53,9 +53,9 @@ struct PreparedExtract {
   repair::KeptNodes kept;
   footprints::RepairedExtract repaired;
   context::ContextExtract context;
-  std::shared_ptr<context::LabelledBuildings> labelled;  ///< what was found to measure them
   evidence::FactsExtract facts;
   evidence::TagFacts tags;
+  std::unique_ptr<context::KeptLabels> labels;  ///< of quarters; null: tiles look at walls themselves
   evidence::StyleExtract styles;
 };
 

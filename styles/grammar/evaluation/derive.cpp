@@ -232,7 +232,7 @@ void Run::leave_leaf(std::string symbol, Shape shape, const Location& location, 
                      std::uint32_t lineage, std::shared_ptr<const ElementRequest> order) {
   keep_occluder(shape, lineage);
   if (options_.orders_only && order == nullptr) return;
-  out_.leaves.push_back({std::move(symbol), std::move(shape), std::move(order), node, location});
+  out_.leaves.emplace_back(std::move(symbol), std::move(shape), std::move(order), node, location);
 }
 
 }  // namespace blockrand::grammar

@@ -82,7 +82,8 @@ void Run::execute_symbol(const Call& call, const Target& found, Work& work, Plac
     full_ = true;
     return;
   }
-  Node child;
+  // Made where it will wait; what turns out to be a leaf, or too deep, is taken off again.
+  Node& child = next_.emplace_back();
   child.symbol = unit.name(call.name);
   if (call.terminal) child.symbol += '.';
   child.depth = node_->depth + 1;
@@ -108,6 +109,7 @@ void Run::execute_symbol(const Call& call, const Target& found, Work& work, Plac
     tell(Severity::error, "depth", call.location,
          "rules follow each other more than " + std::to_string(options_.limits.depth) + " deep; this branch ends here",
          child.symbol);
+    next_.pop_back();
     return;
   }
   child.lineage = child_lineage(work);
@@ -133,10 +135,9 @@ void Run::execute_symbol(const Call& call, const Target& found, Work& work, Plac
                          .shape = child.shape});
   ++ordinals_;
   child.number = number;
-  if (child.definition != kNone)
-    next_.push_back(std::move(child));
-  else
-    leave_leaf(std::move(child.symbol), std::move(child.shape), location, number, child.lineage);
+  if (child.definition != kNone) return;
+  leave_leaf(std::move(child.symbol), std::move(child.shape), location, number, child.lineage);
+  next_.pop_back();
 }
 
 void Run::execute_request(const Call& call, Work& work, Place& place, bool last) {

@@ -122,6 +122,12 @@ Scalar Run::scalar_of_operator(const Expression& e, Place& place) {
     if (left == (e.op == Operator::logical_or)) return Scalar::of(left);
     return Scalar::of(condition(e.second, place));
   }
+  if (is_comparison(e.op))
+    if (const Expression& second = program_.unit(place.module).expressions[e.second];
+        second.kind == ExpressionKind::text)
+      if (const Value* first = known_value(program_.unit(place.module).expressions[e.first], place))
+        if (const auto* text = std::get_if<std::string>(first))
+          return Scalar::of(compare(e.op, *text, program_.unit(place.module).texts[second.text]));
   Scalar left = scalar(e.first, place);
   if (e.kind == ExpressionKind::unary) {
     if (left.type == Type::truth && e.op == Operator::logical_not) return Scalar::of(!left.truth);

@@ -18,8 +18,8 @@ using testing_shapes::Random;
 
 /// An upright wall with rows of openings, rounded to the grid; some stand on one axis, some near the border.
 model::Solid wall_with_openings(Random& random) {
-  const double angle = random.next(6) == 0 ? 0.5 * 3.14159265358979 * static_cast<double>(random.next(4))
-                                            : 6.28 * random.unit();
+  const double angle =
+      random.next(6) == 0 ? 0.5 * 3.14159265358979 * static_cast<double>(random.next(4)) : 6.28 * random.unit();
   const double c = std::cos(angle), s = std::sin(angle), length = 4 + 40 * random.unit();
   const int bays = 1 + static_cast<int>(length / 4), storeys = 1 + static_cast<int>(random.next(5));
   std::vector<std::vector<Point3>> rings;
@@ -33,8 +33,10 @@ model::Solid wall_with_openings(Random& random) {
   const double sill = random.next(3) == 0 ? 0.02 + 0.05 * random.unit() : 0.8;
   for (int y = 0; y < storeys; ++y)
     for (int x = 0; x < bays; ++x) {
-      const double bay = length / bays, width = random.next(2) == 0 ? 1.0 : 0.6 + 0.05 * static_cast<double>(random.next(8));
-      const double left = bay * x + (bay - width) / 2 + (random.next(4) == 0 ? 0.3 * random.unit() : 0), low = 3.0 * y + sill;
+      const double bay = length / bays,
+                   width = random.next(2) == 0 ? 1.0 : 0.6 + 0.05 * static_cast<double>(random.next(8));
+      const double left = bay * x + (bay - width) / 2 + (random.next(4) == 0 ? 0.3 * random.unit() : 0),
+                   low = 3.0 * y + sill;
       add({{left, low}, {left + width, low}, {left + width, low + 1.6}, {left, low + 1.6}}, true);
     }
   // Some walls are bent more than rounding does.
@@ -68,7 +70,8 @@ TEST(FoldTest, SaysWhatNormalDeviationSays) {
     ++walls;
     const double angle = normal_deviation(solid, solid.faces[0]);
     // Limits around the angle itself are the hard ones.
-    for (const double limit : {0.2617993877991494, 0.3490658503988659, 0.05, angle, angle - 1e-6, angle + 1e-6, angle / 2}) {
+    for (const double limit :
+         {0.2617993877991494, 0.3490658503988659, 0.05, angle, angle - 1e-6, angle + 1e-6, angle / 2}) {
       if (limit < 0) continue;
       ASSERT_EQ(folds_more_than(solid, solid.faces[0], triangles->triangles, limit), angle > limit)
           << i << " " << angle << " " << limit;
