@@ -239,7 +239,7 @@ TEST(Explain, WhatWasNotBuiltSaysWhy) {
 }
 
 TEST(Explain, GivesPiecesThatAreTheWhole) {
-  const test::SampleRegion town = test::SampleRegion::settlement(600, false);
+  const test::SampleRegion town = test::SampleRegion::settlement(2000, false);
   const Explanations whole = explain(town.region(), plain_options());
   ASSERT_GT(whole.lines.size(), 2 * kExplainedPiece) << "several pieces";
   std::string joined;
