@@ -14,15 +14,14 @@ std::string deflated(std::string_view bytes, int level, DeflateFormat format) {
       libdeflate_alloc_compressor(level), &libdeflate_free_compressor);
   if (!compressor) throw std::bad_alloc();
   const bool zlib = format == DeflateFormat::zlib;
-  std::string out(zlib ? libdeflate_zlib_compress_bound(compressor.get(), bytes.size())
-                       : libdeflate_deflate_compress_bound(compressor.get(), bytes.size()),
-                  '\0');
+  const std::size_t most = zlib ? libdeflate_zlib_compress_bound(compressor.get(), bytes.size())
+                                : libdeflate_deflate_compress_bound(compressor.get(), bytes.size());
+  // Not cleared: most of it is never touched.
+  const auto room = std::make_unique_for_overwrite<char[]>(most);
   const auto compress = zlib ? libdeflate_zlib_compress : libdeflate_deflate_compress;
-  const std::size_t size = compress(compressor.get(), bytes.data(), bytes.size(), out.data(), out.size());
+  const std::size_t size = compress(compressor.get(), bytes.data(), bytes.size(), room.get(), most);
   assert(size > 0);
-  out.resize(size);
-  out.shrink_to_fit();
-  return out;
+  return {room.get(), size};
 }
 
 std::uint32_t crc32_of(std::string_view bytes, std::uint32_t before) {

@@ -1,5 +1,7 @@
 #include "pipeline/base/markup.h"
 
+#include <array>
+
 namespace blockrand::base {
 namespace {
 
@@ -22,6 +24,14 @@ std::size_t allowed_sequence(const unsigned char* p, const unsigned char* end) {
   return 0;
 }
 
+/// By character: ASCII that is written as it is.
+template <class Escape>
+constexpr std::array<bool, 256> is_plain = [] {
+  std::array<bool, 256> out{};
+  for (std::size_t c = 0x20; c < 0x80; ++c) out[c] = !Escape::needs(static_cast<unsigned char>(c));
+  return out;
+}();
+
 /// Appends cleaned text; `escape` says which ASCII characters it writes in another way. Runs of the others are copied
 /// in one go.
 template <class Escape>
@@ -31,6 +41,8 @@ void append_escaped(std::string& out, std::string_view text, const Escape& escap
   const auto* plain = p;  // start of what can be copied as it is
   const auto flush = [&] { out.append(reinterpret_cast<const char*>(plain), static_cast<std::size_t>(p - plain)); };
   while (p < end) {
+    while (p < end && is_plain<Escape>[*p]) ++p;
+    if (p == end) break;
     const std::size_t length = allowed_sequence(p, end);
     if (length == 0) {
       flush();
@@ -51,12 +63,12 @@ void append_escaped(std::string& out, std::string_view text, const Escape& escap
 }
 
 struct NoEscape {
-  static bool needs(unsigned char) { return false; }
+  static constexpr bool needs(unsigned char) { return false; }
   static void write(std::string&, unsigned char) {}
 };
 
 struct XmlEscape {
-  static bool needs(unsigned char c) { return c < 0x20 || c == '&' || c == '<' || c == '>' || c == '"'; }
+  static constexpr bool needs(unsigned char c) { return c < 0x20 || c == '&' || c == '<' || c == '>' || c == '"'; }
   static void write(std::string& out, unsigned char c) {
     switch (c) {
       case '&':
@@ -85,7 +97,7 @@ struct XmlEscape {
 };
 
 struct JsonEscape {
-  static bool needs(unsigned char c) { return c < 0x20 || c == '"' || c == '\\'; }
+  static constexpr bool needs(unsigned char c) { return c < 0x20 || c == '"' || c == '\\'; }
   static void write(std::string& out, unsigned char c) {
     switch (c) {
       case '"':
@@ -125,14 +137,23 @@ std::string escaped(std::string_view text) {
 
 void append_base64(std::string& out, std::string_view bytes) {
   static constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  out.reserve(out.size() + (bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const auto at = [&](std::size_t k) { return k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0u; };
-    const unsigned group = at(i) << 16 | at(i + 1) << 8 | at(i + 2);
-    out += letters[group >> 18];
-    out += letters[group >> 12 & 63];
-    out += i + 1 < bytes.size() ? letters[group >> 6 & 63] : '=';
-    out += i + 2 < bytes.size() ? letters[group & 63] : '=';
+  const std::size_t before = out.size(), whole = bytes.size() / 3;
+  out.resize(before + (bytes.size() + 2) / 3 * 4);
+  char* to = out.data() + before;
+  const auto* from = reinterpret_cast<const unsigned char*>(bytes.data());
+  for (std::size_t i = 0; i < whole; ++i, from += 3) {
+    const unsigned group = static_cast<unsigned>(from[0]) << 16 | static_cast<unsigned>(from[1]) << 8 | from[2];
+    *to++ = letters[group >> 18];
+    *to++ = letters[group >> 12 & 63];
+    *to++ = letters[group >> 6 & 63];
+    *to++ = letters[group & 63];
+  }
+  if (const std::size_t rest = bytes.size() % 3; rest > 0) {
+    const unsigned group = static_cast<unsigned>(from[0]) << 16 | (rest > 1 ? static_cast<unsigned>(from[1]) << 8 : 0u);
+    *to++ = letters[group >> 18];
+    *to++ = letters[group >> 12 & 63];
+    *to++ = rest > 1 ? letters[group >> 6 & 63] : '=';
+    *to++ = '=';
   }
 }
 

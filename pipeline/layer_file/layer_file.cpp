@@ -136,7 +136,7 @@ struct LayerFile::Impl {
         // The file is new and is thrown away when anything fails: nothing to roll back to, nothing to wait for.
         {"OGR_SQLITE_SYNCHRONOUS", "OFF"},
         {"OGR_SQLITE_JOURNAL", "OFF"},
-        {"OGR_SQLITE_PRAGMA", "cache_size=-32768,locking_mode=EXCLUSIVE"},
+        {"OGR_SQLITE_PRAGMA", "cache_size=-8192,locking_mode=EXCLUSIVE"},
         // A second connection and a thread race with ours: the index is made at the end instead.
         {"OGR_GPKG_ALLOW_THREADED_RTREE", "NO"},
         // Settings of the user's environment that would change the bytes.

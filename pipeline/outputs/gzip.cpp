@@ -69,6 +69,7 @@ std::string gunzip(std::string_view bytes) {
     status = inflate(&stream, Z_NO_FLUSH);
     consumed += input - stream.avail_in;
     out.resize(produced + kPiece - stream.avail_out);
+    if (status == Z_STREAM_END && consumed < bytes.size()) status = inflateReset(&stream);  // the next member
   }
   inflateEnd(&stream);
   if (status != Z_STREAM_END) throw std::runtime_error("the gzip data are damaged or cut off");

@@ -13,7 +13,7 @@ namespace blockrand::outputs {
 /// \throws std::bad_alloc there is no memory
 std::string gzip(std::string_view bytes, int level = 6, std::string_view comment = {});
 
-/// The content of a gzip file of one member. \throws std::runtime_error when it is damaged or cut off
+/// The content of a gzip file of any number of members. \throws std::runtime_error when it is damaged or cut off
 std::string gunzip(std::string_view bytes);
 
 }  // namespace blockrand::outputs

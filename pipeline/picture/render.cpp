@@ -307,16 +307,13 @@ class Shader {
   Rgb coloured(std::uint32_t what, int x, int y, std::optional<Lit>* lit, float* open) {
     const float nearness = samples_.nearness(samples_.index(x, y));
     const Surface& surface = what == kGroundPlane ? ground_ : surface_of(what);
-    const Point3 place = view_.position(x + 0.5, y + 0.5, nearness);
+    const bool known_light = !options_.lit || (lit && *lit && same_light(**lit, surface.normal, nearness));
+    Point3 place;
+    if (!known_light || surface.blended || what == kGroundPlane) place = view_.position(x + 0.5, y + 0.5, nearness);
     Rgb colour = surface.blended ? blend_at(scene_.blends()[scene_.faces()[what].blend], place) : surface.albedo;
     if (options_.lit) {
-      Rgb arriving;
-      if (lit && *lit && same_light(**lit, surface.normal, nearness)) {
-        arriving = (*lit)->arriving;
-      } else {
-        arriving = light_at(surface, place, open);
-        if (lit) *lit = Lit{surface.normal, nearness, arriving};
-      }
+      const Rgb arriving = known_light ? (*lit)->arriving : light_at(surface, place, open);
+      if (lit && !known_light) *lit = Lit{surface.normal, nearness, arriving};
       colour = colour * arriving * 0.45f;
       colour = {compressed(colour.r), compressed(colour.g), compressed(colour.b)};
     }

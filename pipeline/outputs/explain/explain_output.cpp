@@ -55,9 +55,18 @@ class ExplainOutput : public OutputOf<ExplainedTile> {
     options.final_state = tile.final_state;
     options.tile = tile.name;
     for (const base::PublishedFile& file : tile.files) options.files.push_back(file.path);
-    Explanations explanations = explain(tile.region, options);
-    tile.files.push_back(context_.folder.write("explain/" + tile.name + ".jsonl.gz",
-                                               gzip(explanations.lines, kGzipLevel, attribution(context_))));
+    // Each piece is a member of the file (RFC 1952, 2.2): neither the text nor its compressed form is held as a whole.
+    base::StagedFile file = context_.folder.create("explain/" + tile.name + ".jsonl.gz");
+    std::string comment = attribution(context_);
+    bool any = false;
+    const auto append = [&](std::string_view lines) {
+      file.append(gzip(lines, kGzipLevel, comment));
+      comment.clear();
+      any = true;
+    };
+    Explanations explanations = explain(tile.region, options, append);
+    if (!any) append({});
+    tile.files.push_back(file.close());
     return ExplainedTile{std::move(explanations.objects), std::move(explanations.places)};
   }
   void take(const FinishedTile& tile, std::any product) override {

@@ -497,11 +497,19 @@ class Writer {
 
 }  // namespace
 
-Explanations explain(const Region& region, const ExplainOptions& options) {
+Explanations explain(const Region& region, const ExplainOptions& options, const Sink& take) {
   Explanations out;
   Writer writer(region, options);
-  for (const Building& building : region.buildings)
-    if (building.owned) writer.line(building, out);
+  const auto hand_over = [&] {
+    take(out.lines);
+    out.lines.clear();
+  };
+  for (const Building& building : region.buildings) {
+    if (!building.owned) continue;
+    writer.line(building, out);
+    if (take && out.lines.size() >= kExplainedPiece) hand_over();
+  }
+  if (take && !out.lines.empty()) hand_over();
   return out;
 }
 

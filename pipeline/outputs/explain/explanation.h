@@ -38,6 +38,7 @@
 
 #include "pipeline/model/region.h"
 #include "pipeline/outputs/imagery/seen_outline.h"
+#include "pipeline/outputs/sink.h"
 
 namespace blockrand::outputs {
 
@@ -82,7 +83,11 @@ struct Explanations {
 
 /// Explains the owned buildings of a region after its masses were built; also those that ended as reported.
 /// The same region gives the same bytes.
-Explanations explain(const model::Region& region, const ExplainOptions& options);
+/// \param take  gets the lines in pieces of about kExplainedPiece, the last one shorter, and leaves Explanations::lines empty; null:
+///              all lines are there
+Explanations explain(const model::Region& region, const ExplainOptions& options, const Sink& take = nullptr);
+/// Bytes. A tile of two thousand buildings has forty million.
+inline constexpr std::size_t kExplainedPiece = 2'000'000;
 
 /// "w123 15_1_2 w123": object, tile, building whose line explains it.
 std::string index_line(model::OsmId object, std::string_view tile, model::OsmId building);

@@ -142,6 +142,17 @@ class DetailPainter {
     for (const model::RoofInstallation& body : detail.roof_installations) scene.add(body.solid, body.triangles, object);
   }
 
+  /// How many triangles add() adds at most.
+  std::size_t count(const model::BuildingPart& part) {
+    if (!has_detail(part)) return std::max(part.lod1_triangles.triangles.size(), part.lod2_triangles.triangles.size());
+    std::size_t sum = part.lod3.triangles.triangles.size();
+    for (const model::WallInstallation& body : part.lod3.installations) sum += body.triangles.triangles.size();
+    for (const model::RoofInstallation& body : part.lod3.roof_installations) sum += body.triangles.triangles.size();
+    for (const model::Placement& p : part.lod3.placements)
+      for (const ElementGeometry::PartTriangles& piece : geometry_of(p.element).parts) sum += piece.indices.size() / 3;
+    return sum;
+  }
+
   /// Everything, or what the part has where it has no LoD3.
   void add(const model::BuildingPart& part, std::uint32_t object, picture::Scene& scene) {
     if (!has_detail(part)) {
@@ -299,6 +310,7 @@ PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, s
   PictureTile tile{picture::Scene(plan.origin), {}, picture::Scene(plan.origin), picture::Scene(plan.origin)};
   if (!plan.chosen[shard]) return tile;
   DetailPainter painter(region);
+  std::vector<std::pair<const model::BuildingPart*, std::uint32_t>> in_detail;  // with the object
   for (const model::Building& building : region.buildings) {
     if (!building.owned) continue;
     const auto object = static_cast<std::uint32_t>(tile.buildings.size());
@@ -317,10 +329,15 @@ PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, s
     if (plan.near_spot[shard] && within({centre.x, centre.y}, plan.spot, kPicturedReach) &&
         std::ranges::any_of(building.parts, has_detail)) {
       pictured.detailed = true;
-      for (const model::BuildingPart& part : building.parts) painter.add(part, object, tile.detail);
+      for (const model::BuildingPart& part : building.parts) in_detail.emplace_back(&part, object);
     }
     tile.buildings.push_back(pictured);
   }
+  // A list that grows by itself would take three times the memory for a while.
+  std::size_t triangles = 0;
+  for (const auto& [part, object] : in_detail) triangles += painter.count(*part);
+  tile.detail.reserve(triangles);
+  for (const auto& [part, object] : in_detail) painter.add(*part, object, tile.detail);
   return tile;
 }
 

@@ -238,6 +238,24 @@ TEST(Explain, WhatWasNotBuiltSaysWhy) {
   EXPECT_THAT(line.at("stages").back().at("text"), HasSubstr("nothing was built"));
 }
 
+TEST(Explain, GivesPiecesThatAreTheWhole) {
+  const test::SampleRegion town = test::SampleRegion::settlement(2000, false);
+  const Explanations whole = explain(town.region(), plain_options());
+  ASSERT_GT(whole.lines.size(), 2 * kExplainedPiece) << "several pieces";
+  std::string joined;
+  std::size_t pieces = 0;
+  const Explanations rest = explain(town.region(), plain_options(), [&](std::string_view piece) {
+    EXPECT_TRUE(piece.ends_with('\n'));
+    EXPECT_LT(piece.size(), kExplainedPiece + 200'000);
+    joined += piece;
+    ++pieces;
+  });
+  EXPECT_GT(pieces, 2u);
+  EXPECT_TRUE(rest.lines.empty());
+  EXPECT_EQ(joined, whole.lines);
+  EXPECT_EQ(rest.objects, whole.objects);
+}
+
 TEST(Gzip, ComesBackAndNoticesDamage) {
   std::string text;
   for (int i = 0; i < 20000; ++i) text += std::to_string(i * 7919 % 1000);
@@ -245,6 +263,9 @@ TEST(Gzip, ComesBackAndNoticesDamage) {
   EXPECT_LT(packed.size(), text.size());
   EXPECT_EQ(gunzip(packed), text);
   EXPECT_EQ(gunzip(gzip("")), "");
+  const std::string members = packed + gzip("") + gzip("more", 9, "a comment") + packed;
+  EXPECT_EQ(gunzip(members), text + "more" + text);
+  EXPECT_THROW(gunzip(members.substr(0, packed.size() + 5)), std::runtime_error) << "the second member is cut off";
   EXPECT_THROW(gunzip(packed.substr(0, packed.size() / 2)), std::runtime_error);
   EXPECT_THROW(gunzip(""), std::runtime_error);
   std::string damaged = packed;
