@@ -85,8 +85,8 @@ void DepthMap::find_highest() {
     }
     for (int i = 0; i < blocks_; ++i) {
       const int right = std::min(size_, (i + 1) * kBlock + kAround);
-      std::uint16_t& highest = highest_[static_cast<std::size_t>(j) * static_cast<std::size_t>(blocks_) +
-                                        static_cast<std::size_t>(i)];
+      std::uint16_t& highest =
+          highest_[static_cast<std::size_t>(j) * static_cast<std::size_t>(blocks_) + static_cast<std::size_t>(i)];
       for (int x = std::max(0, i * kBlock - kAround); x < right; ++x)
         highest = std::max(highest, column[static_cast<std::size_t>(x)]);
     }
@@ -102,8 +102,8 @@ float DepthMap::soft(const Vector& place) const {
                static_cast<std::size_t>(cx / kBlock)] <= z)
     return 1;
   // Cells cx-1 … cx+2 weighted by a box of width 3 around the place: the inner ones fully, the outer ones in part.
-  const std::uint16_t* row = &depth_[static_cast<std::size_t>(cy - 1) * static_cast<std::size_t>(size_) +
-                                     static_cast<std::size_t>(cx - 1)];
+  const std::uint16_t* row =
+      &depth_[static_cast<std::size_t>(cy - 1) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(cx - 1)];
   float sum = 0;
   const float wy[4] = {1 - fy, 1, 1, fy};
   for (int j = 0; j < 4; ++j, row += size_) {

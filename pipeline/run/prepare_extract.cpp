@@ -119,9 +119,9 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
     needed = evidence::needed_for(asked, repaired.footprints, context, tables);
   }
   auto labelled = std::make_shared<context::LabelledBuildings>();
-  evidence::FactsExtract facts = evidence::facts_extract(extract, repaired.footprints, repaired.first, context,
-                                                         context::VicinityFinder(extract, repaired.footprints, context, labelled),
-                                                         workers, progress, memo, needed);
+  evidence::FactsExtract facts = evidence::facts_extract(
+      extract, repaired.footprints, repaired.first, context,
+      context::VicinityFinder(extract, repaired.footprints, context, labelled), workers, progress, memo, needed);
   evidence::TagFacts tags =
       evidence::tag_facts(extract, repaired.footprints, context, tables, located.projection, facts);
   malloc_trim(0);

@@ -435,7 +435,8 @@ std::vector<outputs::ReportPicture> Pictures::shoot(int workers, std::string_vie
     shots.push_back(std::move(shot));
   };
   add(core, {view.azimuth, kElevation}, kFieldOfView, kWidth, kHeight, fmt::format("Seen from the {}.", view.from));
-  add(core, {view.azimuth + 180, kElevation}, kFieldOfView, kPairWidth, kPairHeight, fmt::format("The same from the {}.", view.to));
+  add(core, {view.azimuth + 180, kElevation}, kFieldOfView, kPairWidth, kPairHeight,
+      fmt::format("The same from the {}.", view.to));
   std::vector<Point3> near = points_near(scene_, plan_.spot, kDetailReach);
   add(near.empty() ? core : near, {view.azimuth, 27}, 40, kPairWidth, kPairHeight, "Where houses stand densest.");
 

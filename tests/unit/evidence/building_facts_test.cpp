@@ -210,5 +210,46 @@ TEST(BuildingFacts, APartOfATownGivesTheSameInsideIt) {
   EXPECT_GT(known, compared / 2) << "blocks, rows and streets were found";
 }
 
+TEST(LabelledBuildings, AreRecalledAsTheyWouldBeFound) {
+  OsmTown town;
+  for (int i = 0; i < 12; ++i) town.box(100 + i, 12.0 * i, 0, i % 4 == 3 ? 9 : 12, 14);
+  town.ring(7, {{0, 30}, {60, 30}, {60, 70}, {0, 70}}, {{15, 40}, {45, 40}, {45, 60}, {15, 60}});
+  town.street(1, {{-30, -8}, {180, -8}}, "Hauptstrasse");
+  town.street(2, {{-30, 22}, {180, 22}}, "Nebenstrasse");
+  const MeasuredTown measured(town, "labelled");
+  const footprints::FootprintStore& store = measured.repaired->footprints;
+  std::vector<std::uint32_t> numbers;
+  for (std::uint32_t b = 0; b < store.size(); ++b) numbers.push_back(b);
+  const auto region_of = [&](const context::VicinityFinder& finder) {
+    model::Region region;
+    region.extract = &measured.extract;
+    for (const std::uint32_t n : numbers) {
+      model::Building& building = region.buildings.emplace_back();
+      building.osm = store[n].id;
+      building.tags = measured.extract.buildings[store[n].lead].tags;
+      building.outline = store.polygons(n);
+      building.arcs = store.arcs(n);
+    }
+    finder.label_wall_segments(region, numbers);
+    base::Packer packer;
+    for (const model::Building& b : region.buildings) packer << b.edges << b.situation << b.trees;
+    return packer.bytes;
+  };
+  const std::string found = region_of(context::VicinityFinder(measured.extract, store, measured.context));
+  EXPECT_GT(found.size(), 1000u);
+  const auto kept = std::make_shared<context::LabelledBuildings>();
+  const context::VicinityFinder finder(measured.extract, store, measured.context, kept);
+  model::Building other;
+  other.osm = store[0].id;
+  other.tags = measured.extract.buildings[store[0].lead].tags;
+  EXPECT_FALSE(kept->recall(0, other)) << "nothing was labelled yet";
+  EXPECT_EQ(region_of(finder), found);
+  EXPECT_TRUE(kept->recall(0, other));
+  EXPECT_FALSE(other.edges.empty());
+  EXPECT_EQ(region_of(finder), found);
+  other.osm = store[1].id;
+  EXPECT_FALSE(kept->recall(0, other)) << "of another building";
+}
+
 }  // namespace
 }  // namespace blockrand::evidence
