@@ -56,6 +56,8 @@ DepthMap::DepthMap(const Scene& scene, Point3 to_light, const Box& box, int size
     });
   }
 
+  find_highest();
+
   const auto set = [&](float* out, Point3 axis, double factor) {
     out[0] = static_cast<float>(axis.x * factor);
     out[1] = static_cast<float>(axis.y * factor);
@@ -69,14 +71,39 @@ DepthMap::DepthMap(const Scene& scene, Point3 to_light, const Box& box, int size
   height_[3] = static_cast<float>(base);
 }
 
+void DepthMap::find_highest() {
+  blocks_ = (size_ + kBlock - 1) / kBlock;
+  highest_.assign(static_cast<std::size_t>(blocks_) * static_cast<std::size_t>(blocks_), 0);
+  constexpr int kAround = 2;
+  std::vector<std::uint16_t> column(static_cast<std::size_t>(size_));
+  for (int j = 0; j < blocks_; ++j) {
+    std::ranges::fill(column, std::uint16_t{0});
+    const int end = std::min(size_, (j + 1) * kBlock + kAround);
+    for (int y = std::max(0, j * kBlock - kAround); y < end; ++y) {
+      const std::uint16_t* const row = &depth_[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_)];
+      for (std::size_t x = 0; x < column.size(); ++x) column[x] = std::max(column[x], row[x]);
+    }
+    for (int i = 0; i < blocks_; ++i) {
+      const int right = std::min(size_, (i + 1) * kBlock + kAround);
+      std::uint16_t& highest =
+          highest_[static_cast<std::size_t>(j) * static_cast<std::size_t>(blocks_) + static_cast<std::size_t>(i)];
+      for (int x = std::max(0, i * kBlock - kAround); x < right; ++x)
+        highest = std::max(highest, column[static_cast<std::size_t>(x)]);
+    }
+  }
+}
+
 float DepthMap::soft(const Vector& place) const {
   const float x = place.x - 0.5f, y = place.y - 0.5f;
   const int cx = static_cast<int>(x), cy = static_cast<int>(y);
   const float fx = x - static_cast<float>(cx), fy = y - static_cast<float>(cy);
   const int z = place.z < 0 ? 0 : place.z > 65535 ? 65535 : static_cast<int>(place.z);
+  if (highest_[static_cast<std::size_t>(cy / kBlock) * static_cast<std::size_t>(blocks_) +
+               static_cast<std::size_t>(cx / kBlock)] <= z)
+    return 1;
   // Cells cx-1 … cx+2 weighted by a box of width 3 around the place: the inner ones fully, the outer ones in part.
-  const std::uint16_t* row = &depth_[static_cast<std::size_t>(cy - 1) * static_cast<std::size_t>(size_) +
-                                     static_cast<std::size_t>(cx - 1)];
+  const std::uint16_t* row =
+      &depth_[static_cast<std::size_t>(cy - 1) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(cx - 1)];
   float sum = 0;
   const float wy[4] = {1 - fy, 1, 1, fy};
   for (int j = 0; j < 4; ++j, row += size_) {

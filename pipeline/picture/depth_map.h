@@ -36,10 +36,15 @@ class DepthMap {
   float soft(const Vector& place) const;
 
  private:
+  static constexpr int kBlock = 8;  // cells along a side
+  void find_highest();
+
   int size_;
   /// Height towards the light of the highest surface, in steps; 0: there is none. Two bytes hold any scene to a few millimetres, and
   /// half as many bytes are twice as near.
   std::vector<std::uint16_t> depth_;
+  int blocks_ = 0;                      ///< along a side
+  std::vector<std::uint16_t> highest_;  ///< of each block and the two cells around it: most places lie above all of it
   double cell_ = 1;
   float column_[4] = {}, row_[4] = {}, height_[4] = {};
 };

@@ -18,14 +18,13 @@ Lighting::Lighting(const Scene& scene, const RenderOptions& options) {
   const base::SinCos e = base::sin_cos(options.sun_elevation * base::kRadiansPerDegree);
   sun_ = {a.sin * e.cos, a.cos * e.cos, e.sin};
   if (!options.lit || scene.empty()) return;
-  if (options.shadows) 
+  if (options.shadows)
     maps_.push_back(std::make_shared<DepthMap>(scene, sun_, local(scene, scene.bounds()), options.shadow_map));
   if (options.sky_occlusion) sky_ = std::make_shared<SkyField>(scene, options.sky_map);
 }
 
 void Lighting::refine(const Scene& scene, const Box& box, int cells) {
-  if (!maps_.empty())
-    maps_.insert(maps_.begin(), std::make_shared<DepthMap>(scene, sun_, local(scene, box), cells));
+  if (!maps_.empty()) maps_.insert(maps_.begin(), std::make_shared<DepthMap>(scene, sun_, local(scene, box), cells));
 }
 
 }  // namespace blockrand::picture

@@ -120,7 +120,9 @@ void Palette::choose(int most) {
   std::vector<Entry> entries;
   for (const Bin& bin : bins_) {
     if (bin.count == 0) continue;
-    const auto mean = [&](std::size_t c) { return static_cast<std::uint32_t>((bin.sum[c] + bin.count / 2) / bin.count); };
+    const auto mean = [&](std::size_t c) {
+      return static_cast<std::uint32_t>((bin.sum[c] + bin.count / 2) / bin.count);
+    };
     entries.push_back({mean(0) << 16 | mean(1) << 8 | mean(2),
                        static_cast<std::uint32_t>(std::min<std::uint64_t>(bin.count, 0xffffffff))});
   }

@@ -53,8 +53,7 @@ class Tones {
 float compressed(float x) {
   constexpr float knee = 0.6f, room = 1 - knee;
   if (!(x > knee)) return x;
-  const float over = (x - knee) / room;
-  return knee + room * over / (1 + over);
+  return 1 - room * room / (x - knee + room);
 }
 
 constexpr std::uint32_t kNothing = 0xffffffff, kGroundPlane = 0xfffffffe;
@@ -417,8 +416,8 @@ class Shader {
   double radius_ = 1;
 };
 
-/// Samples that are held at a time: with nearness and face 4 MB.
-constexpr int kBandSamples = 500'000;
+/// Samples that are held at a time: with nearness and face 2 MB, as a core's cache.
+constexpr int kBandSamples = 250'000;
 
 }  // namespace
 

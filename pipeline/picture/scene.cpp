@@ -51,12 +51,12 @@ void Scene::push(const std::array<Point3, 3>& corners, Colour colour, std::uint3
     return gap < kOnePlaneGap && gap > -kOnePlaneGap;
   };
   if (!goes_on())
-    faces_.push_back({.normal = {static_cast<float>(normal.x), static_cast<float>(normal.y),
-                                 static_cast<float>(normal.z)},
-                      .colour = colour,
-                      .closed = closed,
-                      .object = object,
-                      .blend = kNoBlend});
+    faces_.push_back(
+        {.normal = {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)},
+         .colour = colour,
+         .closed = closed,
+         .object = object,
+         .blend = kNoBlend});
   triangles_.push_back({own, static_cast<std::uint32_t>(faces_.size() - 1)});
 }
 
@@ -67,7 +67,8 @@ void Scene::push_face(const model::Solid& solid, const model::SolidTriangles& tr
   const std::size_t first = triangles_.size();
   for (std::uint32_t t = triangles.first[f]; t < triangles.first[f + 1]; ++t) {
     const auto& c = triangles.triangles[t];
-    const Point3 a = solid.vertices[c[0]] + offset, b = solid.vertices[c[1]] + offset, d = solid.vertices[c[2]] + offset;
+    const Point3 a = solid.vertices[c[0]] + offset, b = solid.vertices[c[1]] + offset,
+                 d = solid.vertices[c[2]] + offset;
     const Point3 area = cross(b - a, d - a);
     if (!(dot(area, area) > 0)) continue;
     sum = sum + area;

@@ -77,7 +77,7 @@ class Scene {
   struct Face {
     Vector normal;  ///< unit, towards the side from which the corners run counter-clockwise
     Colour colour;
-    bool closed = false;             ///< of a solid: never seen from behind
+    bool closed = false;  ///< of a solid: never seen from behind
     std::uint32_t object = 0;
     std::uint32_t blend = kNoBlend;  ///< of a face whose corners differ in colour: into blends()
   };

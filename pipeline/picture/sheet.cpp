@@ -174,7 +174,7 @@ class Sheet::Layout {
       const std::string words = length_text(bar_);
       write(page, {left, y + body_ * kAscent}, "0", {.size = body_, .colour = kInk});
       write(page, {left + length - letters_.width(words, body_), y + body_ * kAscent}, words,
-                     {.size = body_, .colour = kInk});
+            {.size = body_, .colour = kInk});
       y += body_ * 2.2;
     }
     if (north_.empty()) return;
@@ -186,8 +186,7 @@ class Sheet::Layout {
     // An arrow that points up, half of it pale, with its letter on top.
     const double x = right - body_ * 0.8, top = block_top_ + body_ * 1.0, bottom = block_top_ + body_ * 3.6,
                  half = body_ * 0.62;
-    write(page, {x - letters_.width("N", body_) / 2, block_top_ + body_ * 0.75}, "N",
-                   {.size = body_, .colour = kInk});
+    write(page, {x - letters_.width("N", body_) / 2, block_top_ + body_ * 0.75}, "N", {.size = body_, .colour = kInk});
     area(page, {up(x, top), up(x - half, bottom), up(x, bottom - half * 0.8)}, kInk);
     const Point2 other[] = {up(x, top), up(x + half, bottom), up(x, bottom - half * 0.8)};
     page.plan.stroke(other, thin, kInk, true);

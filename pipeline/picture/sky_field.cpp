@@ -22,8 +22,7 @@ class TakenOfWall {
   TakenOfWall() {
     for (int i = 0; i < kSteps; ++i) {
       const double u = static_cast<double>(i) / kSteps, t = u / (1 - u);
-      table_[static_cast<std::size_t>(i)] =
-          static_cast<float>(2 / base::kPi * (base::atan2(t, 1) + t / (1 + t * t)));
+      table_[static_cast<std::size_t>(i)] = static_cast<float>(2 / base::kPi * (base::atan2(t, 1) + t / (1 + t * t)));
     }
     table_[kSteps] = 1;
   }
@@ -68,9 +67,8 @@ void SkyField::measure_heights(const Scene& scene) {
   for (const Scene::Triangle& t : scene.triangles()) {
     const Scene::Face& face = faces[t.face];
     if (face.closed && face.normal.z <= 0) continue;
-    draw(view, t, {columns_, 0, rows_}, [&](std::size_t i, double height) {
-      cells_[i].top = std::max(cells_[i].top, static_cast<float>(height));
-    });
+    draw(view, t, {columns_, 0, rows_},
+         [&](std::size_t i, double height) { cells_[i].top = std::max(cells_[i].top, static_cast<float>(height)); });
   }
 }
 
@@ -101,10 +99,10 @@ void SkyField::sweep(double azimuth) {
       const int side = line + offset[static_cast<std::size_t>(i)];
       if (side < 0 || side >= lines) continue;
       const int along = backwards ? length - 1 - i : i;
-      const std::size_t index = across ? static_cast<std::size_t>(side) * static_cast<std::size_t>(columns_) +
-                                             static_cast<std::size_t>(along)
-                                       : static_cast<std::size_t>(along) * static_cast<std::size_t>(columns_) +
-                                             static_cast<std::size_t>(side);
+      const std::size_t index =
+          across
+              ? static_cast<std::size_t>(side) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(along)
+              : static_cast<std::size_t>(along) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(side);
       Cell& cell = cells_[index];
       const float at = static_cast<float>(i) * step;
       const auto rise = [&](const Summit& s) { return (s.height - cell.top) / (at - s.at); };
@@ -130,7 +128,8 @@ void SkyField::finish(double margin) {
   const double fringe = margin / cell_;
   for (int y = 0; y < rows_; ++y)
     for (int x = 0; x < columns_; ++x) {
-      Cell& cell = cells_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x)];
+      Cell& cell =
+          cells_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x)];
       cell.around = cell.taken[1] > 0 ? cell.around / cell.taken[1] : cell.top + 1;
       // To nothing at the border, beyond which nothing is known.
       const double inside = std::min({x, y, columns_ - 1 - x, rows_ - 1 - y}) / fringe;
@@ -167,7 +166,8 @@ float SkyField::open(const Asker& asker, float x, float y, float z) const {
     return 1;
   const int i = static_cast<int>(column), j = static_cast<int>(row);
   const float fx = column - static_cast<float>(i), fy = row - static_cast<float>(j);
-  const Cell* below = &cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)];
+  const Cell* below =
+      &cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)];
   const Cell* const cells[4] = {below, below + 1, below + columns_, below + columns_ + 1};
   const float weights[4] = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
   // A roof's slope rises by about a cell from one to the next. What rises more is another building, and the place is not in it.

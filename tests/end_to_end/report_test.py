@@ -63,7 +63,10 @@ def png_faults(data):
         return f'chunks {kinds}'
     width, height, depth, colour = struct.unpack('>IIBB', chunks[0][1][:10])
     pixels = zlib.decompress(b''.join(body for kind, body in chunks if kind == b'IDAT'))
-    if (depth, colour) != (8, 2) or len(pixels) != height * (1 + 3 * width):
+    samples = {2: 3, 3: 1}.get(colour, 0)  # a colour of its own, or one of a palette
+    if colour == 3 and not 0 < len(chunks[kinds.index(b'PLTE')][1]) <= 3 * 256:
+        return 'palette'
+    if depth != 8 or len(pixels) != height * (1 + samples * width):
         return f'{len(pixels)} bytes of pixels for {width} x {height}'
     if len(set(pixels)) < 30:
         return 'nothing is to be seen'

@@ -216,9 +216,10 @@ void write_names(picture::Image& image, std::span<const picture::Label> names, c
     if (std::ranges::all_of(box, [&](model::Point2 p) { return p.y < -label.size; }) ||
         std::ranges::all_of(box, [&](model::Point2 p) { return p.y > image.height + label.size; }))
       continue;
-    letters.write(image, label.start(), label.text,
-                  {.size = label.size, .colour = kNameInk, .halo = 0.13 * label.size, .halo_colour = picture::kPlanPaper},
-                  label.direction);
+    letters.write(
+        image, label.start(), label.text,
+        {.size = label.size, .colour = kNameInk, .halo = 0.13 * label.size, .halo_colour = picture::kPlanPaper},
+        label.direction);
   }
 }
 

@@ -221,8 +221,8 @@ struct View {
   std::string_view from, to;
 };
 
-/// Cells along a side of the shadow map of what stands near by: 12 cm.
-constexpr int kNearShadowMap = 1536;
+/// Cells along a side of the shadow maps: about one for a pixel, also of what stands near by.
+constexpr int kShadowMap = 1536, kNearShadowMap = 1536;
 
 picture::Box box_around(std::span<const Point3> points) {
   picture::Box box;
@@ -429,12 +429,14 @@ std::vector<outputs::ReportPicture> Pictures::shoot(int workers, std::string_vie
     shot.options.width = width;
     shot.options.height = height;
     shot.options.sun_azimuth = view.sun;
+    shot.options.shadow_map = kShadowMap;
     shot.camera = fit_perspective(points, from, static_cast<double>(width) / height, field_of_view, kMargin);
     shot.caption = std::move(caption);
     shots.push_back(std::move(shot));
   };
   add(core, {view.azimuth, kElevation}, kFieldOfView, kWidth, kHeight, fmt::format("Seen from the {}.", view.from));
-  add(core, {view.azimuth + 180, kElevation}, kFieldOfView, kPairWidth, kPairHeight, fmt::format("The same from the {}.", view.to));
+  add(core, {view.azimuth + 180, kElevation}, kFieldOfView, kPairWidth, kPairHeight,
+      fmt::format("The same from the {}.", view.to));
   std::vector<Point3> near = points_near(scene_, plan_.spot, kDetailReach);
   add(near.empty() ? core : near, {view.azimuth, 27}, 40, kPairWidth, kPairHeight, "Where houses stand densest.");
 
