@@ -54,7 +54,7 @@ struct Glb {
   /// The same of elements that are part of the tile's mesh: below a node called "elements".
   std::vector<std::vector<GlbTriangle>> element_triangles;
   std::vector<GlbElement> elements;
-  bool pieces = false;  ///< places are those of pieces, of which an element has several
+  bool pieces = false;           ///< places are those of pieces, of which an element has several
   std::vector<GlbPlace> places;  ///< of elements: by EXT_mesh_gpu_instancing, or nodes with extras.feature
   /// The scene is made of objects: nodes with a building's id in `extras`, below them those of its parts.
   bool objects = false;

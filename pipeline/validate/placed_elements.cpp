@@ -208,7 +208,8 @@ void check_openings(const Glb& glb, const std::string& file, std::vector<Finding
       const auto near = index.near({p.xy(), p.xy()}, kAround);
       if (std::any_of(near.begin(), near.end(), [&](std::uint32_t i) { return boxes[i].holds(p); })) continue;
       const auto around = triangle_index.near({p.xy(), p.xy()}, kAround);
-      if (std::any_of(around.begin(), around.end(), [&](std::uint32_t i) { return distance(p, triangles[i]) <= kAround; }))
+      if (std::any_of(around.begin(), around.end(),
+                      [&](std::uint32_t i) { return distance(p, triangles[i]) <= kAround; }))
         continue;
       if (open++ == 0) where = p;
     }
@@ -228,8 +229,8 @@ std::string text(const std::array<std::uint8_t, 3>& colour) {
 /// Something that is drawn of an element.
 struct Drawn {
   std::vector<Point3> points;  ///< of its box, or its corners; m in the tile's frame
-  bool of_wall = false;        ///< in the colours of walls alone: perhaps a reveal, which is no part of elements elsewhere
-  bool held = false;           ///< an element's box holds it
+  bool of_wall = false;  ///< in the colours of walls alone: perhaps a reveal, which is no part of elements elsewhere
+  bool held = false;     ///< an element's box holds it
 };
 
 }  // namespace
@@ -258,7 +259,8 @@ void compare_pieces(const Side& reference, const Glb& glb, const std::string& gl
       Drawn& d = drawn.emplace_back();
       d.of_wall = std::all_of(colours.begin(), colours.end(), of_wall);
       for (int i = 0; i < 8; ++i)
-        d.points.push_back(placed(*place, {i & 1 ? e.max.x : e.min.x, i & 2 ? e.max.y : e.min.y, i & 4 ? e.max.z : e.min.z}));
+        d.points.push_back(
+            placed(*place, {i & 1 ? e.max.x : e.min.x, i & 2 ? e.max.y : e.min.y, i & 4 ? e.max.z : e.min.z}));
     }
     for (const GlbTriangle& t : glb.element_triangles[row->second]) {
       has.insert(text(t.colour));
@@ -313,17 +315,21 @@ void compare_pieces(const Side& reference, const Glb& glb, const std::string& gl
           empty++ == 0)
         where = origin;
     }
-    const auto differs = [&](Check check, std::string what) { findings.push_back({check, glb_file, body.id, std::move(what)}); };
+    const auto differs = [&](Check check, std::string what) {
+      findings.push_back({check, glb_file, body.id, std::move(what)});
+    };
     if (empty > 0)
       differs(Check::geometry_differs, fmt::format("{} elements of {} are not there, at {:.3f} {:.3f} {:.3f}", empty,
                                                    reference.file, where.x, where.y, where.z));
     const auto strange = std::find_if(drawn.begin(), drawn.end(), [](const Drawn& d) { return !d.held && !d.of_wall; });
     if (strange != drawn.end())
-      differs(Check::geometry_differs, fmt::format("an element stands where {} has none, at {:.3f} {:.3f} {:.3f}", reference.file,
-                                                   strange->points[0].x, strange->points[0].y, strange->points[0].z));
+      differs(Check::geometry_differs,
+              fmt::format("an element stands where {} has none, at {:.3f} {:.3f} {:.3f}", reference.file,
+                          strange->points[0].x, strange->points[0].y, strange->points[0].z));
     for (const std::string& colour : has)
       if (!wanted.count(colour) && !of_wall(colour)) {
-        differs(Check::colour_differs, fmt::format("an element with faces in {}, which none has in {}", colour, reference.file));
+        differs(Check::colour_differs,
+                fmt::format("an element with faces in {}, which none has in {}", colour, reference.file));
         break;
       }
   }

@@ -309,7 +309,8 @@ class Checker {
     compare_in_frame(*tile_.glb, [&](const ToLocal& to_local, double tolerance) {
       compare_meshes(reference, *tile_.glb, files_.path[kGltf], to_local, tolerance, baked_ || lean, out_.findings);
       if (!baked_ && !lean)
-        (tile_.glb->pieces ? compare_pieces : compare_places)(reference, *tile_.glb, files_.path[kGltf], to_local, tolerance, out_.findings);
+        (tile_.glb->pieces ? compare_pieces : compare_places)(reference, *tile_.glb, files_.path[kGltf], to_local,
+                                                              tolerance, out_.findings);
     });
   }
 

@@ -35,13 +35,13 @@ std::array<double, 3> values(const Point3& p) { return {p.x, p.y, p.z}; }
 
 /// Without what rounding left.
 Point3 clean_normal(const Point3& n) {
-  const auto clean = [](double v) { return std::fabs(v) < kFlat ? 0.0 : std::fabs(v) > 1 - kFlat ? std::copysign(1.0, v) : v; };
+  const auto clean = [](double v) {
+    return std::fabs(v) < kFlat ? 0.0 : std::fabs(v) > 1 - kFlat ? std::copysign(1.0, v) : v;
+  };
   return {clean(n.x), clean(n.y), clean(n.z)};
 }
 
-bool along_an_axis(const Point3& n) {
-  return (n.x != 0) + (n.y != 0) + (n.z != 0) == 1;
-}
+bool along_an_axis(const Point3& n) { return (n.x != 0) + (n.y != 0) + (n.z != 0) == 1; }
 
 void settle(Piece& piece) {
   Point3 min = piece.vertices.front().position, max = min;
@@ -100,7 +100,8 @@ std::vector<KindOfPiece> pieces_of(const model::ColouredElement& element, const 
       if (piece.vertices.size() + part.vertices.size() > ElementGeometry::kMostVertices) end();
       const auto first = static_cast<std::uint32_t>(piece.vertices.size());
       const model::PartMaterial& look = element.materials[static_cast<std::size_t>(part.part)];
-      for (const ElementVertex& v : part.vertices) piece.vertices.push_back({v.position, clean_normal(v.exact_normal), look});
+      for (const ElementVertex& v : part.vertices)
+        piece.vertices.push_back({v.position, clean_normal(v.exact_normal), look});
       for (const std::uint32_t i : part.indices) piece.indices.push_back(first + i);
     }
     end();
@@ -128,7 +129,8 @@ std::vector<Piece> connected_parts(const Piece& piece) {
     const Piece::Vertex& v = piece.vertices[i];
     return std::tuple(v.look.material, v.look.colour, v.position);
   };
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return std::pair(key(a), a) < std::pair(key(b), b); });
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return std::pair(key(a), a) < std::pair(key(b), b); });
   for (std::size_t i = 1; i < order.size(); ++i)
     if (key(order[i - 1]) == key(order[i])) join(order[i - 1], order[i]);
 
@@ -173,7 +175,8 @@ std::optional<Point3> scale_to(const Piece& piece, const Piece& shape, double to
   for (std::size_t i = 0; i < piece.vertices.size(); ++i) {
     const Point3 &n = piece.vertices[i].normal, &m = shape.vertices[i].normal;
     // Some viewers scale normals as they do positions, others by the inverse as they should.
-    const Point3 wrong{m.x * scale[0], m.y * scale[1], m.z * scale[2]}, right{m.x / scale[0], m.y / scale[1], m.z / scale[2]};
+    const Point3 wrong{m.x * scale[0], m.y * scale[1], m.z * scale[2]},
+        right{m.x / scale[0], m.y / scale[1], m.z / scale[2]};
     if (!turns ? dot(n, m) < kNormalCosine
                : !(dot(n, wrong) >= kNormalCosine * length(wrong) && dot(n, right) >= kNormalCosine * length(right)))
       return std::nullopt;

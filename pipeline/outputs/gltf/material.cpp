@@ -27,8 +27,8 @@ void append_big_endian(std::string& out, std::uint32_t value) {
 void append_chunk(std::string& png, const std::string& type_and_data) {
   append_big_endian(png, static_cast<std::uint32_t>(type_and_data.size() - 4));
   png += type_and_data;
-  append_big_endian(png, static_cast<std::uint32_t>(crc32(
-                             0, reinterpret_cast<const Bytef*>(type_and_data.data()), static_cast<uInt>(type_and_data.size()))));
+  append_big_endian(png, static_cast<std::uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(type_and_data.data()),
+                                                          static_cast<uInt>(type_and_data.size()))));
 }
 
 }  // namespace

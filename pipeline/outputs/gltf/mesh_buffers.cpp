@@ -335,7 +335,8 @@ void set_box(Mesh& mesh) {
 
 }  // namespace
 
-Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake, std::span<const BakedPiece> pieces) {
+Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake,
+                std::span<const BakedPiece> pieces) {
   Bodies bodies = collect_bodies(region, lod, frame, bake);
   Mesh mesh;
   mesh.positions = std::move(bodies.local);

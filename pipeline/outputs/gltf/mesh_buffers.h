@@ -27,9 +27,9 @@ struct MeshPrimitive {
   /// 65535 as an index would restart a primitive.
   static constexpr std::size_t kMostVertices = 65535;
 
-  model::PartMaterial look;          ///< of all faces, where they have one
-  std::vector<MeshVertex> vertices;  ///< at most kMostVertices
-  std::vector<std::uint16_t> indices;   ///< counter-clockwise triangles seen from outside
+  model::PartMaterial look;            ///< of all faces, where they have one
+  std::vector<MeshVertex> vertices;    ///< at most kMostVertices
+  std::vector<std::uint16_t> indices;  ///< counter-clockwise triangles seen from outside
 };
 
 struct Mesh {

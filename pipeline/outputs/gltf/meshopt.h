@@ -26,7 +26,6 @@ constexpr bool has_filter(MeshoptCoding coding) {
 /// \return by vertex its new number; ~0 where no triangle uses it. The indices are new ones already.
 std::vector<std::uint32_t> packing_order(std::vector<std::uint16_t>& indices, std::size_t vertices);
 
-
 /// \param bytes  at least size * count; \param size  of an element, a multiple of 4; of an index 2
 /// \param count  of elements; a multiple of 3 for triangles
 std::string meshopt_encode(std::string_view bytes, std::size_t size, std::size_t count, MeshoptCoding coding);

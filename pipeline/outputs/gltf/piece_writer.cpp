@@ -21,6 +21,9 @@ constexpr double kPlaceSteps = kMeshStepsPerMetre;
 constexpr double kCube = 16384;       ///< half the edge of the cube that upright shapes fill
 constexpr double kMostSteps = 32767;  ///< of a 16-bit position
 constexpr double kScaleSteps = 131072;
+/// Of an axis in which a shape of the cube is flat. Others reach through the whole cube: readers that take the bounds of
+/// the accessor for its own are off by a millimetre then.
+constexpr double kFlatScale = 1.0 / 16384;
 
 std::array<double, 3> values(const Point3& p) { return {p.x, p.y, p.z}; }
 
@@ -102,7 +105,8 @@ class PieceWriter {
       for (const double n : {v.normal.x, v.normal.y, v.normal.z, 0.0})
         block.normals.push_back(static_cast<std::int8_t>(std::nearbyint(n * 127)));
       const model::Colour& c = v.look.colour;
-      block.colours.insert(block.colours.end(), {kLinearLight[c.r], kLinearLight[c.g], kLinearLight[c.b], std::uint16_t{65535}});
+      block.colours.insert(block.colours.end(),
+                           {kLinearLight[c.r], kLinearLight[c.g], kLinearLight[c.b], std::uint16_t{65535}});
       const std::array<std::uint16_t, 2> place = materials_.place(v.look.material);
       block.classes.insert(block.classes.end(), place.begin(), place.end());
     }
@@ -122,7 +126,11 @@ class PieceWriter {
     const auto add = [&]<class T>(const char* name, Stream stream, const std::vector<T>& list, Component component,
                                   const char* type, bool normalised) {
       const std::size_t at = document_.append<T>(stream, list);
-      GlbAccessor accessor{.stream = stream, .offset = at, .component = component, .type = type, .count = block.count,
+      GlbAccessor accessor{.stream = stream,
+                           .offset = at,
+                           .component = component,
+                           .type = type,
+                           .count = block.count,
                            .normalised = normalised};
       if (stream == Stream::element_positions) accessor.bounds = bounds;
       json += json.empty() ? "\"" : ",\"";
@@ -166,7 +174,8 @@ class PieceWriter {
         rotations.push_back(static_cast<std::int16_t>(std::nearbyint(v * 32767)));
       for (std::size_t k = 0; k < 3; ++k) {
         const bool flat = !(values(piece.shape.half)[k] > 0);
-        const double scale = flat ? 1 : values(place.scale)[k] * kPlaceSteps / values(units)[k];
+        const double scale =
+            flat ? (piece.shape.upright ? kFlatScale : 1) : values(place.scale)[k] * kPlaceSteps / values(units)[k];
         scales.push_back(static_cast<float>(std::max(1.0, std::nearbyint(scale * kScaleSteps)) / kScaleSteps));
       }
       rows.insert(place.at->feature);
@@ -185,12 +194,17 @@ class PieceWriter {
       json += '"';
       json += name;
       json += "\":";
-      append_number(json, std::int64_t{document_.add_accessor({.stream = stream, .offset = at, .component = component,
-                                                               .type = type, .count = n, .normalised = normalised})});
+      append_number(json, std::int64_t{document_.add_accessor({.stream = stream,
+                                                               .offset = at,
+                                                               .component = component,
+                                                               .type = type,
+                                                               .count = n,
+                                                               .normalised = normalised})});
     };
     add("ROTATION", Stream::rotations, rotations, Component::int16, "VEC4", true);
     add("SCALE", Stream::piece_scales, scales, Component::float32, "VEC3", false);
-    add("TRANSLATION", far ? Stream::far_translations : Stream::translations, translations, Component::float32, "VEC3", false);
+    add("TRANSLATION", far ? Stream::far_translations : Stream::translations, translations, Component::float32, "VEC3",
+        false);
     if (wide_features_)
       add("_FEATURE_ID_0", Stream::wide_instance_features, wide, Component::float32, "SCALAR", false);
     else

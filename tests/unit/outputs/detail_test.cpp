@@ -481,8 +481,7 @@ TEST(DetailGlb, PiecesShowEveryElementWhereItStands) {
   ASSERT_NE(part, nullptr);
   for (int i = 1; i <= 40; ++i) {
     auto wide = std::make_shared<model::Element>(*like.element);
-    for (model::Point3& p : wide->mesh.vertices)
-      p.x += p.x > 0 ? 0.01 * i : p.x < 0 ? -0.01 * i : 0;
+    for (model::Point3& p : wide->mesh.vertices) p.x += p.x > 0 ? 0.01 * i : p.x < 0 ? -0.01 * i : 0;
     for (model::Point2& p : wide->opening.outline) p.x += p.x > 0 ? 0.01 * i : -0.01 * i;
     model::ColouredElement coloured = like;
     coloured.element = wide;
@@ -525,9 +524,9 @@ TEST(DetailGlb, PiecesShowEveryElementWhereItStands) {
       shown += piece.shape.triangles() * piece.places.size();
       for (const PlacedPiece::Place& place : piece.places)
         for (const Piece::Vertex& v : piece.shape.vertices) {
-          const model::Point3 d = PieceTurn(place.at->along)(
-              {place.middle.x + v.position.x * place.scale.x, place.middle.y + v.position.y * place.scale.y,
-               place.middle.z + v.position.z * place.scale.z});
+          const model::Point3 d = PieceTurn(place.at->along)({place.middle.x + v.position.x * place.scale.x,
+                                                              place.middle.y + v.position.y * place.scale.y,
+                                                              place.middle.z + v.position.z * place.scale.z});
           const model::Point3& o = place.at->origin;
           away += !stands({o.x + d.x, o.y + d.y, o.z + d.z}, place.at->feature);
         }
