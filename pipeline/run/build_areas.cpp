@@ -78,17 +78,17 @@ void keep_memory_low() {
 
 /// The extract as a store, sorted first where it is not. In a process of its own, so that its buffers are gone afterwards.
 /// \returns  its peak of memory, bytes
-std::uint64_t divide(const BuildOptions& options, int level, const std::string& work, base::Progress& progress) {
+std::uint64_t divide(const BuildOptions& options, const std::string& work, base::Progress& progress) {
   const base::ChildResult result = base::run_in_child(options.input, [&](base::Progress& child) {
     keep_memory_low();
     std::error_code error;
     fs::create_directories(work, error);
     const std::string store = work + "/store", sorted = work + "/sorted.osm.pbf";
-    if (!importers::osm::write_store(options.input, store, level, kHalo)) {
+    if (!importers::osm::write_store(options.input, store)) {
       const importers::osm::AppliedChanges applied = importers::osm::apply_changes(options.input, {}, sorted);
       if (applied.cleaned_texts)
         child.warn(told_input(options) + ": NUL characters in its texts were replaced; reports do not repeat that");
-      if (!importers::osm::write_store(sorted, store, level, kHalo))
+      if (!importers::osm::write_store(sorted, store))
         throw std::logic_error("a sorted extract is not sorted");
       fs::remove(sorted, error);
     }
@@ -151,7 +151,7 @@ class AreaBuild {
     { const BuildInputs inputs(options_); }  // what is wrong with them is told before the extract is read
     open_cache();
     progress_.begin("divide");
-    peak_ = divide(options_, options_.areas, work_, progress_);
+    peak_ = divide(options_, work_, progress_);
     const ExtractStore store(work_ + "/store");
     if (store.figures().cleaned_texts)
       progress_.warn(told_input(options_) + ": NUL characters in its texts were replaced; reports do not repeat that");
@@ -216,19 +216,23 @@ class AreaBuild {
 
   /// Which areas there are, and what each is made from.
   void choose(const ExtractStore& store) {
-    std::map<TileId, std::string> hashes;
-    std::uint64_t largest = 0;
-    for (const importers::osm::StoredArea& a : store.areas())
-      if (survey_.objects.contains(a.tile)) hashes[a.tile] = a.sha256, largest = std::max(largest, a.bytes);
+    std::set<TileId> tiles;
+    for (const auto& [tile, objects] : survey_.objects) tiles.insert(tile);
     // What has no place needs one that tells of it.
-    if (hashes.empty()) hashes[store.areas().empty() ? TileId{options_.areas, 0, 0} : store.areas().front().tile] = "";
+    if (tiles.empty()) {
+      const std::vector<importers::osm::StoredArea> areas = store.areas(options_.areas);
+      tiles.insert(areas.empty() ? TileId{options_.areas, 0, 0} : areas.front().tile);
+    }
+    std::uint64_t largest = 0;
     const georef::Crs crs = georef::open_crs(survey_.facts.crs, survey_.facts.box);
     const georef::Projection projection(crs, survey_.facts.box);
-    for (const auto& [tile, hash] : hashes) {
+    for (const TileId& tile : tiles) {
       AreaPart& part = parts_.emplace_back(AreaPart{store, choose_area(tile, survey_.facts)});
+      const importers::osm::StoredPart stored = store.part(part.choice.window);
+      largest = std::max(largest, stored.bytes);
       part.choice.placeless = parts_.size() == 1 && store.has_placeless();
       base::Packer key;
-      key << program_identity() << options_.settings << named_.name << tile << hash;
+      key << program_identity() << options_.settings << named_.name << tile << stored.sha256;
       pack_facts(key, part.choice, projection);
       // Objects without a place have no hash of their own.
       if (part.choice.placeless) key << store.figures().sha256;
@@ -493,7 +497,7 @@ BuildSummary build_one_area(const BuildOptions& options, base::Progress& progres
       choose_area(parse_tile(options.area, "--area", kLowestArea), read_region_facts(options.pinned, options));
   of_area.area.clear(), of_area.pinned.clear();
   base::StagedFolder place(options.output + ".store", false, {.name = "store", .marker = "index"});
-  divide(options, choice.id.level, place.staging_path(), progress);
+  divide(options, place.staging_path(), progress);
   const ExtractStore store(place.staging_path() + "/store");
   std::ifstream file(options.pinned, std::ios::binary);
   const Json pinned = Json::parse(file, nullptr, false);
