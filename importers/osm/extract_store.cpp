@@ -408,7 +408,8 @@ class StoreWriter {
                    [&](const OSMObject& object) {
                      if (!visit(object, again)) return;
                      const auto found = relations_.find(object.id());
-                     if (found != relations_.end()) files_.add(found->second.cells, Kind::relation, object, found->second.reach);
+                     if (found != relations_.end())
+                       files_.add(found->second.cells, Kind::relation, object, found->second.reach);
                    },
                    {});
     newest_ = newest;
@@ -444,8 +445,8 @@ class StoreWriter {
   std::optional<std::tuple<osmium::item_type, bool, std::int64_t>> last_;
   std::uint32_t newest_ = 0;
   std::map<std::int64_t, Relation> relations_;
-  std::map<std::int64_t, KnownWay> boxes_;         ///< of ways that relations have
-  std::map<std::int64_t, LateWay> late_;           ///< by way
+  std::map<std::int64_t, KnownWay> boxes_;  ///< of ways that relations have
+  std::map<std::int64_t, LateWay> late_;    ///< by way
   std::set<std::int64_t> missing_nodes_;
   std::vector<model::Location> line_;  ///< places of the nodes of the way at hand
   std::set<TileId> cells_;             ///< of the object at hand
@@ -536,9 +537,8 @@ struct ExtractStore::State {
           x = first->tile.x;
           continue;
         }
-        for (auto cell = first; cell != index.cells.end() && cell->tile.level == level && cell->tile.x == x &&
-                                cell->tile.y <= y1;
-             ++cell)
+        for (auto cell = first;
+             cell != index.cells.end() && cell->tile.level == level && cell->tile.x == x && cell->tile.y <= y1; ++cell)
           if (cell->box.meets(box)) out.push_back(&*cell);
         ++x;
       }
@@ -680,7 +680,8 @@ std::vector<ChangedObject> ExtractStore::changes_since(const ExtractStore& befor
         const char* type = relation.tags()["type"];
         version.related = type && std::string_view(type) == "building";
         for (const osmium::RelationMember& m : relation.members())
-          if (const auto way = versions.find({m.type(), m.ref()}); way != versions.end() && m.type() != osmium::item_type::node)
+          if (const auto way = versions.find({m.type(), m.ref()});
+              way != versions.end() && m.type() != osmium::item_type::node)
             version.told += way->second.told, version.box.add(way->second.box);
       }
       versions.emplace(std::pair(object.type(), object.id()), std::move(version));

@@ -88,8 +88,7 @@ std::uint64_t divide(const BuildOptions& options, const std::string& work, base:
       const importers::osm::AppliedChanges applied = importers::osm::apply_changes(options.input, {}, sorted);
       if (applied.cleaned_texts)
         child.warn(told_input(options) + ": NUL characters in its texts were replaced; reports do not repeat that");
-      if (!importers::osm::write_store(sorted, store))
-        throw std::logic_error("a sorted extract is not sorted");
+      if (!importers::osm::write_store(sorted, store)) throw std::logic_error("a sorted extract is not sorted");
       fs::remove(sorted, error);
     }
     return std::string();

@@ -13,6 +13,7 @@
 
 #include "importers/osm/extract_store.h"
 #include "pipeline/base/progress.h"
+#include "pipeline/run/area_record.h"
 #include "pipeline/run/build.h"
 #include "pipeline/run/tile_choice.h"
 
@@ -22,6 +23,13 @@ namespace blockrand::run {
 struct AreaPart {
   const importers::osm::ExtractStore& store;
   TileChoice choice;
+  std::string record_key = {};         ///< under which the records of its tiles are kept; empty: they are not
+  const AreaRecord* before = nullptr;  ///< with TileChoice::only: those of the other tiles
+};
+
+/// What lies around the tiles that are looked into does not suffice: the area is to be built with all that lies around it.
+struct WindowTooSmall {
+  std::string why;
 };
 
 /// \throws base::UsageError  --areas or --area with what they cannot be used with

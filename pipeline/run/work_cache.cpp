@@ -326,6 +326,10 @@ void WorkCache::note_parts(const std::string& piece, std::span<const std::uint64
   parts_[piece].assign(parts.begin(), parts.end());
 }
 
+void WorkCache::keep_note(const std::string& piece) {
+  if (const std::optional<std::vector<std::uint64_t>> parts = parts_before(piece)) note_parts(piece, *parts);
+}
+
 std::set<std::string> WorkCache::used() const {
   const std::lock_guard lock(mutex_);
   return used_;

@@ -72,6 +72,8 @@ class WorkCache {
   std::optional<std::vector<std::uint64_t>> parts_before(const std::string& piece) const;
   /// Notes it. Written at the end.
   void note_parts(const std::string& piece, std::span<const std::uint64_t> parts);
+  /// Notes again what was noted before: the piece was not looked into.
+  void keep_note(const std::string& piece);
 
   std::uint64_t damaged() const { return damaged_; }  ///< entries that were removed because of it
   /// Why an entry could not be kept; empty: all were.
