@@ -101,8 +101,8 @@ std::uint32_t crc_of(std::string_view bytes) {
       crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));
 }
 
-std::string objects_path(const std::string& folder) { return folder + "/objects"; }
-std::string index_path(const std::string& folder) { return folder + "/index"; }
+std::string objects_path(const std::string& folder) { return folder + "/" + kStoreFiles[0]; }
+std::string index_path(const std::string& folder) { return folder + "/" + kStoreFiles[1]; }
 
 constexpr double kUnit = 1e-7;
 
@@ -471,7 +471,7 @@ bool write_store(const std::string& extract, const std::string& folder) {
 }
 
 struct ExtractStore::State {
-  std::string folder;
+  std::string objects;  ///< path
   Index index;
 
   base::InputError damaged(const std::string& path) const {
@@ -490,14 +490,14 @@ struct ExtractStore::State {
       bytes.resize(c.bytes);
       in.seekg(static_cast<std::streamoff>(c.offset));
       in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-      if (!in || crc_of(bytes) != c.crc) throw damaged(objects_path(folder));
+      if (!in || crc_of(bytes) != c.crc) throw damaged(objects);
       for (std::size_t at = 0; at < bytes.size();) {
         Box box;
-        if (bytes.size() - at < sizeof box + sizeof(osmium::memory::Item)) throw damaged(objects_path(folder));
+        if (bytes.size() - at < sizeof box + sizeof(osmium::memory::Item)) throw damaged(objects);
         std::memcpy(&box, bytes.data() + at, sizeof box);
         at += sizeof box;
         const std::size_t object = reinterpret_cast<const osmium::memory::Item*>(bytes.data() + at)->padded_size();
-        if (object == 0 || object > bytes.size() - at) throw damaged(objects_path(folder));
+        if (object == 0 || object > bytes.size() - at) throw damaged(objects);
         if (window.empty() || box.empty() || box.meets(window)) {
           std::memcpy(buffer.reserve_space(object), bytes.data() + at, object);
           buffer.commit();
@@ -551,8 +551,8 @@ struct ExtractStore::State {
   /// \param window  what does not meet it may be left out; empty: nothing is
   void for_each(const std::vector<const CellEntry*>& cells, const Box& window, osmium::osm_entity_bits::type type,
                 const OsmFile::Visit& visit) const {
-    std::ifstream in(objects_path(folder), std::ios::binary);
-    if (!in) throw damaged(objects_path(folder));
+    std::ifstream in(objects, std::ios::binary);
+    if (!in) throw damaged(objects);
     for (const auto& [bit, kinds] :
          {std::pair{osmium::osm_entity_bits::node, std::array{Kind::node, Kind::node}},
           std::pair{osmium::osm_entity_bits::way, std::array{Kind::way, Kind::late_way}},
@@ -577,9 +577,10 @@ struct ExtractStore::State {
   }
 };
 
-ExtractStore::ExtractStore(std::string folder) : state_(std::make_unique<State>()) {
-  state_->folder = std::move(folder);
-  const std::string path = index_path(state_->folder);
+ExtractStore::ExtractStore(const std::string& folder) : ExtractStore(objects_path(folder), index_path(folder)) {}
+
+ExtractStore::ExtractStore(std::string objects, const std::string& path) : state_(std::make_unique<State>()) {
+  state_->objects = std::move(objects);
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   if (bytes.size() < kHashLength) throw state_->damaged(path);
@@ -633,12 +634,12 @@ model::Extract ExtractStore::read(const ReadOptions& options, bool placeless) co
   const std::array<double, 4> window = options.bbox.value_or(kGlobe);
   std::vector<const CellEntry*> cells = state_->cells_of(window);
   if (const CellEntry* entry = placeless ? state_->find(nowhere()) : nullptr) cells.push_back(entry);
-  OsmFile file(state_->folder, [&](osmium::osm_entity_bits::type type, const OsmFile::Visit& visit) {
+  OsmFile file(state_->objects, [&](osmium::osm_entity_bits::type type, const OsmFile::Visit& visit) {
     state_->for_each(cells, box_of(window), type, visit);
   });
   ReadOptions of_window = options;
   of_window.placeless = placeless;
-  return read_file(file, state_->folder, of_window);
+  return read_file(file, state_->objects, of_window);
 }
 
 namespace {

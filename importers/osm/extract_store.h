@@ -62,11 +62,16 @@ bool write_store(const std::string& extract, const std::string& folder);
 /// What spans more cannot be what stands around one area: what holds the area as a whole is told to it (RegionFacts::areas). Degrees.
 inline constexpr double kWholeSpan = 1.0;
 
+/// The files of a store, below its folder: objects, index.
+inline constexpr std::array<const char*, 2> kStoreFiles{"objects", "index"};
+
 /// A store that is read. Each piece is checked as it is read.
 class ExtractStore {
  public:
   /// \throws base::InputError  missing or damaged
-  explicit ExtractStore(std::string folder);
+  explicit ExtractStore(const std::string& folder);
+  /// Of its two files, wherever they lie (store_files). \throws as above
+  ExtractStore(std::string objects, const std::string& index);
   ~ExtractStore();
   ExtractStore(ExtractStore&&) noexcept;
 

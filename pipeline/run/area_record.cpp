@@ -224,6 +224,12 @@ AreaRecord record_area(const RecordInputs& inputs, const std::function<bool(cons
   return Recorder(inputs, wanted).record();
 }
 
+AreaReach reaches_in(const AreaRecord& record) {
+  AreaReach out;
+  for (const auto& [tile, told] : record) out.emplace(tile, told.reach);
+  return out;
+}
+
 AreaAsTold told_area(const AreaRecord& record, std::span<const model::Point2> coverage) {
   AreaAsTold out;
   std::vector<std::pair<OsmId, std::pair<const TileRecord*, std::uint32_t>>> objects;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/context/context_extract.h"
@@ -15,6 +16,7 @@
 #include "pipeline/footprints/shard.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/extract.h"
+#include "pipeline/run/area_reach.h"
 #include "pipeline/run/tile_choice.h"
 
 namespace blockrand::run {
@@ -66,10 +68,15 @@ struct TileRecord {
   std::vector<RecordedCourtyard> courtyards;
   std::map<context::CellIndex, context::CellSums> cells;
   std::vector<context::NetworkLine> lines;  ///< that come near
+  std::string shown;  ///< Output::reads_of_tile of all outputs
+  TileReach reach;
 };
 
 /// By tile, those with anything to tell. kNowhere for what has no place.
 using AreaRecord = std::map<model::TileId, TileRecord>;
+
+/// Kinds of kept work: the records of an area, and what of them says which tiles a change concerns.
+inline constexpr std::string_view kRecords = "areas", kReaches = "reaches";
 
 /// What records are made of.
 struct RecordInputs {
@@ -84,6 +91,9 @@ struct RecordInputs {
 
 /// \param wanted  which tiles of the area
 AreaRecord record_area(const RecordInputs& inputs, const std::function<bool(const model::TileId&)>& wanted);
+
+/// The reaches of all tiles, for a piece of their own.
+AreaReach reaches_in(const AreaRecord& record);
 
 /// What outputs and the account see of an area: of buildings elsewhere that a block has they know the ids alone.
 struct AreaAsTold {

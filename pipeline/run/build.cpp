@@ -287,14 +287,48 @@ void publish(base::StagedFolder& folder, const BuildOptions& options, BuildSumma
 
 // ---- areas
 
-/// Of the tiles that are looked into, and of the others as they were. \param before  null: there are no others
-AreaRecord record_tiles(const RecordInputs& inputs, const AreaRecord* before) {
+/// Of the tiles that are looked into, and of the others as they were.
+AreaRecord record_tiles(const RecordInputs& inputs, AreaRecord before) {
   const std::optional<std::set<model::TileId>>& only = inputs.area.only;
   AreaRecord tiles = record_area(inputs, [&](const model::TileId& t) { return !only || only->contains(t); });
-  if (only && before)
-    for (const auto& [tile, told] : *before)
-      if (!only->contains(tile)) tiles.emplace(tile, told);
+  for (auto& [tile, told] : before)
+    if (!only->contains(tile)) tiles.emplace(tile, std::move(told));
   return tiles;
+}
+
+/// \throws WindowTooSmall  they are not kept any more
+AreaRecord records_before(const AreaPart& part, WorkCache* cache) {
+  if (cache)
+    if (const std::optional<WorkCache::Found> found = cache->find(kRecords, part.before_key)) try {
+        return base::unpacked<AreaRecord>(found->bytes);
+      } catch (const base::UnpackError&) {
+      }
+  throw WindowTooSmall("records of tiles are missing");
+}
+
+/// Of the tiles that are looked into. \throws WindowTooSmall  more must be read for them
+void note_reaches(const TileChoice& area, const ReachInputs& inputs, const districts::RuleSets& book,
+                  AreaRecord& records) {
+  std::vector<model::TileId> tiles;
+  for (const auto& [tile, told] : records)
+    if (!area.only || area.only->contains(tile)) tiles.push_back(tile);
+  const geometry::PlanBox read = within_window(area.window, inputs.located.projection);
+  for (const auto& [tile, reach] : reaches_of(inputs, tiles)) {
+    records[tile].reach = reach;
+    if (area.only && !holds(read, needed_around(reach, rules_reach(book))))
+      throw WindowTooSmall("tile " + text_of(tile) + " hears of more");
+  }
+}
+
+/// What outputs show of a tile. \throws WindowTooSmall  of one that is not looked into it is something else now
+void note_shown(std::span<const TileToTell> todo, const OpenOutputs& open, AreaRecord& records) {
+  for (const TileToTell& t : todo) {
+    std::string shown;
+    for (const auto& output : open.list) shown += output->reads_of_tile(t.place);
+    TileRecord& record = records.at(t.tile);
+    if (!t.shard && record.shown != shown) throw WindowTooSmall("pictures show tile " + text_of(t.tile));
+    record.shown = std::move(shown);
+  }
 }
 
 /// In tile order. \param area  null: all that is looked into
@@ -366,7 +400,8 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
                                .projection = projection,
                                .rows = report.rows,
                                .area = *tile},
-                              part ? part->before : nullptr);
+                              tile->only ? records_before(*part, cache.get()) : AreaRecord());
+    if (cache) note_reaches(*tile, {located, prepared, inputs.tables, *tile}, inputs.rules.book, tiles_here);
     area = told_area(tiles_here, located.facts.coverage);
     report.rows = std::move(area->rows);
     record.data_sha256 = area->data_sha256, record.data_time = area->data_time, record.counts = area->counts;
@@ -429,6 +464,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
       .workers = workers,
       .memo = memo ? &*memo : nullptr};
   const OpenOutputs open(output_context);
+  if (area) note_shown(todo, open, tiles_here);
   const context::Ground ground(inputs.terrain ? &*inputs.terrain : nullptr, options.ground_height, projection);
   std::atomic<std::int64_t> context_time = 0;
   const evidence::StyleInputs style_inputs{prepared.facts, prepared.tags, prepared.styles, inputs.tables};
@@ -474,7 +510,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
     const TileToTell& t = todo[i];
     if (!t.shard) {
       std::optional<TileResult> kept = cache ? kept_tile(t.key, open, told, folder, *cache) : std::nullopt;
-      if (!kept) throw WindowTooSmall{"work on tile " + text_of(t.tile) + " is not kept any more"};
+      if (!kept) throw WindowTooSmall("work on tile " + text_of(t.tile) + " is not kept");
       slot = std::move(*kept);
       cache->keep_note(outputs::tile_name(t.tile));
       return;
@@ -513,8 +549,10 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
 
   progress.begin("documents", open.list.size() + 2);
   finish_outputs(open, sums.whole, account, record, progress);
-  if (cache && part && !part->record_key.empty())
-    cache->keep("areas", part->record_key, base::packed(tiles_here), {}, {});
+  if (cache && part && !part->record_key.empty()) {
+    cache->keep(kRecords, part->record_key, base::packed(tiles_here), {}, {});
+    cache->keep(kReaches, part->record_key, base::packed(reaches_in(tiles_here)), {}, {});
+  }
   if (cache) tell_cache(*cache, options, summary, progress);
   folder.write("build.json", build_json(options, record));
   progress.end();

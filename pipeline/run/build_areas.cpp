@@ -60,12 +60,13 @@ struct AreaOutcome {
   std::vector<std::string> unaccounted;
   std::string folder;
   std::vector<outputs::PartySide> open_walls;
+  bool in_part = false;  ///< only some tiles were looked into
 };
 
 AreaOutcome outcome_of(BuildSummary&& s) {
   return {s.tiles_built,          s.tiles_kept,    s.planned_tile_seconds,   std::move(s.tiles_built_for),
           std::move(s.kept_work), s.below_quality, std::move(s.unaccounted), std::move(s.folder),
-          std::move(s.open_walls)};
+          std::move(s.open_walls), false};
 }
 
 /// Of this process from here on: what is freed goes back to the system. 9 to 14 % less at the peak of a dense area at LoD3, for 1 %
@@ -231,12 +232,16 @@ class AreaBuild {
       largest = std::max(largest, stored.bytes);
       part.choice.placeless = parts_.size() == 1 && store.has_placeless();
       base::Packer key;
-      key << program_identity() << options_.settings << named_.name << tile << stored.sha256;
+      key << program_identity() << options_.settings << named_.name << tile;
       pack_facts(key, part.choice, projection);
+      facts_keys_.push_back(base::sha256_of(key.bytes));
+      key << stored.sha256;
       // Objects without a place have no hash of their own.
       if (part.choice.placeless) key << store.figures().sha256;
       keys_.push_back(base::sha256_of(key.bytes));
+      if (cache_) part.record_key = keys_.back();
     }
+    find_changes(store, projection);
     const std::uint64_t each = kAreaBase + static_cast<std::uint64_t>(kPerStoredByte * static_cast<double>(largest));
     const int workers = base::worker_count(options_.jobs);
     at_once_ = 1;
@@ -252,12 +257,125 @@ class AreaBuild {
     jobs_ = std::max(1, workers / static_cast<int>(at_once_));
   }
 
-  /// The same area of the earlier build, where it was made from the same and is whole.
+  static std::string store_key(const std::string& data) {
+    base::Packer key;
+    key << program_identity() << data;
+    return base::sha256_of(key.bytes);
+  }
+
+  /// What differs from the data of the earlier build, and which tiles it concerns. The store is kept for the next run.
+  void find_changes(const ExtractStore& store, const georef::Projection& projection) {
+    if (!cache_ || options_.settings.empty()) return;
+    constexpr std::string_view kStores = "stores";
+    std::vector<base::PublishedFile> files;
+    for (const char* name : importers::osm::kStoreFiles) {
+      std::error_code error;
+      const std::string path = work_ + "/store/" + name;
+      files.push_back({name, fs::file_size(path, error), base::sha256_file(path)});
+    }
+    cache_->keep(kStores, store_key(store.figures().sha256), {}, files, work_ + "/store");
+    if (options_.earlier.empty()) return;
+    if (earlier_record_.is_null()) earlier_record_ = json_of(options_.earlier + "/build.json");
+    const Json data = earlier_record_.value("data", Json::object());
+    const std::optional<WorkCache::Found> before = cache_->find(kStores, store_key(text_in(data, "sha256")));
+    if (!before || before->places.size() != files.size()) return;
+    std::vector<importers::osm::ChangedObject> changes;
+    try {
+      changes = store.changes_since(ExtractStore(before->places[0], before->places[1]));
+    } catch (const base::InputError&) {
+      return;
+    }
+    const double rules = rules_reach(BuildInputs(options_).rules.book);
+    for (std::size_t i = 0; i < parts_.size(); ++i) look_at_changes(i, changes, rules, projection);
+  }
+
+  /// Which tiles of an area the changes concern, where work on the others is kept.
+  void look_at_changes(std::size_t i, std::span<const importers::osm::ChangedObject> changes, double rules,
+                       const georef::Projection& projection) {
+    AreaPart& part = parts_[i];
+    const Json run = json_of(options_.earlier + "/" + area_path(part.choice.id) + "/run.json");
+    if (!run.is_object() || text_in(run, "facts") != facts_keys_[i] || text_in(run, "made_from") == keys_[i]) return;
+    const std::string made_from = text_in(run, "made_from");
+    const std::optional<WorkCache::Found> found = cache_->find(kReaches, made_from);
+    if (!found || !cache_->has(kRecords, made_from)) return;
+    AreaReach reaches;
+    try {
+      reaches = base::unpacked<AreaReach>(found->bytes);
+    } catch (const base::UnpackError&) {
+      return;
+    }
+    std::set<TileId> tiles;
+    geometry::PlanBox needed;
+    const georef::GeoBox own = georef::bounds(part.choice.id);
+    for (const importers::osm::ChangedObject& change : changes) {
+      if (change.placeless && part.choice.placeless) return;
+      if (change.placeless && change.box == std::array<double, 4>{}) continue;
+      // Somewhere else: no tile here reaches further than what is read for the area.
+      const auto& window = part.choice.window;
+      if (change.box[0] > window[2] || change.box[2] < window[0] || change.box[1] > window[3] ||
+          change.box[3] < window[1])
+        continue;
+      const geometry::PlanBox box = projected_box(change.box, projection);
+      const double beyond = std::max(change.network ? kNetworkReach : 0, change.kinds != 0 ? rules : 0);
+      constexpr double kBent = 1;  // m: sides of the box of an object in the projection
+      for (const auto& [tile, reach] : reaches)
+        if (reach.far.near(box, kBent) || reach.near.near(box, beyond + kBent)) tiles.insert(tile);
+      // Tiles that may tell of it for the first time.
+      const std::array<double, 4> here{std::max(change.box[0], own.west), std::max(change.box[1], own.south),
+                                       std::min(change.box[2], own.east), std::min(change.box[3], own.north)};
+      if (here[0] > here[2] || here[1] > here[3]) continue;
+      const auto at = [](double lon, double lat) {
+        return georef::tile_of({static_cast<std::int32_t>(std::lround(lon * 1e7)),
+                                static_cast<std::int32_t>(std::lround(lat * 1e7))},
+                               footprints::kTileLevel);
+      };
+      const TileId low = at(here[0], here[1]), high = at(here[2], here[3]);
+      constexpr std::uint64_t kMostTiles = 64;  // as many as an area has: it is looked into as a whole
+      if ((high.x - low.x + std::uint64_t{1}) * (high.y - low.y + std::uint64_t{1}) > kMostTiles) return;
+      for (std::uint32_t y = low.y; y <= high.y; ++y)
+        for (std::uint32_t x = low.x; x <= high.x; ++x)
+          if (const TileId tile{footprints::kTileLevel, x, y}; georef::contains(part.choice.id, tile)) {
+            tiles.insert(tile);
+            const georef::GeoBox b = georef::bounds(tile);
+            const geometry::PlanBox ground = projected_box({b.west, b.south, b.east, b.north}, projection);
+            needed.include(needed_around({ground, ground}, rules));
+            needed.include(box);
+          }
+    }
+    if (tiles.empty()) {
+      unconcerned_.insert(i);
+      return;
+    }
+    for (const TileId& tile : tiles)
+      if (const auto reach = reaches.find(tile); reach != reaches.end()) needed.include(needed_around(reach->second, rules));
+    // Outlines that changed may reach a little further than before.
+    constexpr double kMore = 300;  // m
+    needed.minimum = {needed.minimum.x - kMore, needed.minimum.y - kMore};
+    needed.maximum = {needed.maximum.x + kMore, needed.maximum.y + kMore};
+    const std::array<double, 4> around = window_around(needed, projection);
+    const auto& all = part.choice.window;
+    Look& look = looks_[i];
+    look.tiles = std::move(tiles), look.before = made_from;
+    look.window = {std::max(around[0], all[0]), std::max(around[1], all[1]), std::min(around[2], all[2]),
+                   std::min(around[3], all[3])};
+    // Where as much is read as for the whole area, its border is that of all that counts.
+  }
+
+  /// The area, of which only some tiles are looked into.
+  AreaPart part_of(std::size_t i) const {
+    AreaPart part = parts_[i];
+    if (const auto look = looks_.find(i); look != looks_.end())
+      part.choice.only = look->second.tiles, part.choice.window = look->second.window,
+      part.before_key = look->second.before;
+    return part;
+  }
+
+  /// The same area of the earlier build, where it was made from the same, or nothing that changed concerns it, and is whole.
   bool take_over(std::size_t i) {
     if (options_.earlier.empty() || options_.settings.empty()) return false;
     const std::string from = options_.earlier + "/" + area_path(parts_[i].choice.id);
     const Json run = json_of(from + "/run.json");
-    if (!run.is_object() || text_in(run, "made_from") != keys_[i]) return false;
+    if (!run.is_object() || (text_in(run, "made_from") != keys_[i] && !unconcerned_.contains(i))) return false;
     std::vector<std::string> paths = {"build.json", "run.json"};
     try {
       if (!is_whole(i, from, paths)) {
@@ -339,6 +457,14 @@ class AreaBuild {
         [&](std::size_t t, base::Progress& child) {
           keep_memory_low();
           of_area.output = place_of(parts_[todo[t]].choice.id);
+          const AreaPart part = part_of(todo[t]);
+          if (part.choice.only) try {
+              AreaOutcome outcome = outcome_of(build_area(of_area, part, child));
+              outcome.in_part = true;
+              return base::packed(outcome);
+            } catch (const WindowTooSmall&) {
+              // As a whole, then.
+            }
           return base::packed(outcome_of(build_area(of_area, parts_[todo[t]], child)));
         },
         [&](std::size_t t, base::ChildResult result) {
@@ -360,6 +486,7 @@ class AreaBuild {
     const std::string area = text_of(parts_[i].choice.id);
     for (const std::string& entry : outcome.kept_work) summary_.kept_work_of_areas.insert(area + " " + entry);
     summary_.below_quality = summary_.below_quality || outcome.below_quality;
+    if (outcome.in_part) summary_.areas_in_part.insert(area);
     summary_.unaccounted.insert(summary_.unaccounted.end(), outcome.unaccounted.begin(), outcome.unaccounted.end());
     if (options_.plan) return;
     const std::string place = place_of(parts_[i].choice.id);
@@ -370,6 +497,8 @@ class AreaBuild {
     }
     Json run = json_of(place + "/run.json");
     run["made_from"] = keys_[i];
+    run["facts"] = facts_keys_[i];
+    run["in_part"] = outcome.in_part;
     run["below_quality"] = outcome.below_quality;
     run["open_walls"] = Json::array();
     for (const outputs::PartySide& side : outcome.open_walls)
@@ -440,7 +569,15 @@ class AreaBuild {
   std::unique_ptr<WorkCache> cache_;
   RegionSurvey survey_;
   std::vector<AreaPart> parts_;
-  std::vector<std::string> keys_;  ///< parallel to parts_
+  std::vector<std::string> keys_, facts_keys_;  ///< parallel to parts_
+  /// An area of which only some tiles are looked into.
+  struct Look {
+    std::set<TileId> tiles;
+    std::array<double, 4> window{};
+    std::string before;  ///< key of the records
+  };
+  std::map<std::size_t, Look> looks_;  ///< by index of the part
+  std::set<std::size_t> unconcerned_;  ///< parts in which nothing differs
   std::size_t at_once_ = 1, kept_ = 0;
   int jobs_ = 1;
   std::uint64_t peak_ = 0, own_peak_ = 0;

@@ -9,6 +9,7 @@
 // Nothing of it grows with the region but one line per area.
 #pragma once
 
+#include <stdexcept>
 #include <string>
 
 #include "importers/osm/extract_store.h"
@@ -23,13 +24,14 @@ namespace blockrand::run {
 struct AreaPart {
   const importers::osm::ExtractStore& store;
   TileChoice choice;
-  std::string record_key = {};         ///< under which the records of its tiles are kept; empty: they are not
-  const AreaRecord* before = nullptr;  ///< with TileChoice::only: those of the other tiles
+  std::string record_key = {};  ///< under which the records of its tiles are kept; empty: they are not
+  std::string before_key = {};  ///< with TileChoice::only: under which those of the other tiles lie
 };
 
-/// What lies around the tiles that are looked into does not suffice: the area is to be built with all that lies around it.
-struct WindowTooSmall {
-  std::string why;
+/// What lies around the tiles that are looked into does not suffice, or work on the others is not kept any more: the area is to be
+/// looked into as a whole.
+struct WindowTooSmall : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 /// \throws base::UsageError  --areas or --area with what they cannot be used with

@@ -279,6 +279,11 @@ std::optional<WorkCache::Found> WorkCache::find(std::string_view kind, const std
   return found;
 }
 
+bool WorkCache::has(std::string_view kind, const std::string& key) const {
+  std::error_code error;
+  return fs::exists(place(kind, key), error);
+}
+
 void WorkCache::keep(std::string_view kind, const std::string& key, std::string_view bytes,
                      std::span<const base::PublishedFile> files, const std::string& folder) {
   if (mode_ == Mode::look) return;

@@ -59,6 +59,9 @@ class WorkCache {
   /// changed since: their time differs.
   std::optional<Found> find(std::string_view kind, const std::string& key);
 
+  /// Whether there is one; it is not read.
+  bool has(std::string_view kind, const std::string& key) const;
+
   /// Keeps an entry. Where that fails (the disk is full), the run goes on without, and is told so at its end.
   /// \param files   below `folder`; they must change no more
   void keep(std::string_view kind, const std::string& key, std::string_view bytes,
