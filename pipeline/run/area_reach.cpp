@@ -20,7 +20,6 @@ PlanBox grown(PlanBox box, double by) {
   return box;
 }
 
-
 /// m. What classification asks of the buildings beside a tile's (needed_for).
 constexpr double kBeside = 5;
 /// Cells to each side that make a building's town, and its own.

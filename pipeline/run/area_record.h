@@ -68,7 +68,7 @@ struct TileRecord {
   std::vector<RecordedCourtyard> courtyards;
   std::map<context::CellIndex, context::CellSums> cells;
   std::vector<context::NetworkLine> lines;  ///< that come near
-  std::string shown;  ///< Output::reads_of_tile of all outputs
+  std::string shown;                        ///< Output::reads_of_tile of all outputs
   TileReach reach;
 };
 

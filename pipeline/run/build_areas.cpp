@@ -60,13 +60,22 @@ struct AreaOutcome {
   std::vector<std::string> unaccounted;
   std::string folder;
   std::vector<outputs::PartySide> open_walls;
-  bool in_part = false;  ///< only some tiles were looked into
+  bool in_part = false;   ///< only some tiles were looked into
+  std::string why_whole;  ///< why all were
 };
 
 AreaOutcome outcome_of(BuildSummary&& s) {
-  return {s.tiles_built,          s.tiles_kept,    s.planned_tile_seconds,   std::move(s.tiles_built_for),
-          std::move(s.kept_work), s.below_quality, std::move(s.unaccounted), std::move(s.folder),
-          std::move(s.open_walls), false};
+  return {s.tiles_built,
+          s.tiles_kept,
+          s.planned_tile_seconds,
+          std::move(s.tiles_built_for),
+          std::move(s.kept_work),
+          s.below_quality,
+          std::move(s.unaccounted),
+          std::move(s.folder),
+          std::move(s.open_walls),
+          false,
+          {}};
 }
 
 /// Of this process from here on: what is freed goes back to the system. 9 to 14 % less at the peak of a dense area at LoD3, for 1 %
@@ -172,6 +181,8 @@ class AreaBuild {
     std::error_code error;
     fs::remove_all(work_, error);
     summary_.areas = parts_.size(), summary_.areas_kept = kept_;
+    if (cache_)
+      for (const std::string& entry : cache_->used()) summary_.kept_work.insert(entry);
     BuildSummary done = finished();
     folder_.write("run.json", run_json());
     publish(done);
@@ -263,6 +274,10 @@ class AreaBuild {
     return base::sha256_of(key.bytes);
   }
 
+  void because(const std::string& why) {
+    for (std::size_t i = 0; i < parts_.size(); ++i) why_whole_[i] = why;
+  }
+
   /// What differs from the data of the earlier build, and which tiles it concerns. The store is kept for the next run.
   void find_changes(const ExtractStore& store, const georef::Projection& projection) {
     if (!cache_ || options_.settings.empty()) return;
@@ -278,12 +293,12 @@ class AreaBuild {
     if (earlier_record_.is_null()) earlier_record_ = json_of(options_.earlier + "/build.json");
     const Json data = earlier_record_.value("data", Json::object());
     const std::optional<WorkCache::Found> before = cache_->find(kStores, store_key(text_in(data, "sha256")));
-    if (!before || before->places.size() != files.size()) return;
+    if (!before || before->places.size() != files.size()) return because("the data of the earlier build are not kept");
     std::vector<importers::osm::ChangedObject> changes;
     try {
       changes = store.changes_since(ExtractStore(before->places[0], before->places[1]));
     } catch (const base::InputError&) {
-      return;
+      return because("the data of the earlier build are damaged");
     }
     const double rules = rules_reach(BuildInputs(options_).rules.book);
     for (std::size_t i = 0; i < parts_.size(); ++i) look_at_changes(i, changes, rules, projection);
@@ -294,7 +309,11 @@ class AreaBuild {
                        const georef::Projection& projection) {
     AreaPart& part = parts_[i];
     const Json run = json_of(options_.earlier + "/" + area_path(part.choice.id) + "/run.json");
-    if (!run.is_object() || text_in(run, "facts") != facts_keys_[i] || text_in(run, "made_from") == keys_[i]) return;
+    why_whole_[i] = "it is new";
+    if (!run.is_object()) return;
+    why_whole_[i] = "what is true of the region, or settings";
+    if (text_in(run, "facts") != facts_keys_[i] || text_in(run, "made_from") == keys_[i]) return;
+    why_whole_[i] = "records are not kept";
     const std::string made_from = text_in(run, "made_from");
     const std::optional<WorkCache::Found> found = cache_->find(kReaches, made_from);
     if (!found || !cache_->has(kRecords, made_from)) return;
@@ -308,6 +327,7 @@ class AreaBuild {
     geometry::PlanBox needed;
     const georef::GeoBox own = georef::bounds(part.choice.id);
     for (const importers::osm::ChangedObject& change : changes) {
+      why_whole_[i] = "objects without a place";
       if (change.placeless && part.choice.placeless) return;
       if (change.placeless && change.box == std::array<double, 4>{}) continue;
       // Somewhere else: no tile here reaches further than what is read for the area.
@@ -325,12 +345,13 @@ class AreaBuild {
                                        std::min(change.box[2], own.east), std::min(change.box[3], own.north)};
       if (here[0] > here[2] || here[1] > here[3]) continue;
       const auto at = [](double lon, double lat) {
-        return georef::tile_of({static_cast<std::int32_t>(std::lround(lon * 1e7)),
-                                static_cast<std::int32_t>(std::lround(lat * 1e7))},
-                               footprints::kTileLevel);
+        return georef::tile_of(
+            {static_cast<std::int32_t>(std::lround(lon * 1e7)), static_cast<std::int32_t>(std::lround(lat * 1e7))},
+            footprints::kTileLevel);
       };
       const TileId low = at(here[0], here[1]), high = at(here[2], here[3]);
       constexpr std::uint64_t kMostTiles = 64;  // as many as an area has: it is looked into as a whole
+      why_whole_[i] = change.id.text() + " spans much of it";
       if ((high.x - low.x + std::uint64_t{1}) * (high.y - low.y + std::uint64_t{1}) > kMostTiles) return;
       for (std::uint32_t y = low.y; y <= high.y; ++y)
         for (std::uint32_t x = low.x; x <= high.x; ++x)
@@ -347,7 +368,8 @@ class AreaBuild {
       return;
     }
     for (const TileId& tile : tiles)
-      if (const auto reach = reaches.find(tile); reach != reaches.end()) needed.include(needed_around(reach->second, rules));
+      if (const auto reach = reaches.find(tile); reach != reaches.end())
+        needed.include(needed_around(reach->second, rules));
     // Outlines that changed may reach a little further than before.
     constexpr double kMore = 300;  // m
     needed.minimum = {needed.minimum.x - kMore, needed.minimum.y - kMore};
@@ -458,14 +480,17 @@ class AreaBuild {
           keep_memory_low();
           of_area.output = place_of(parts_[todo[t]].choice.id);
           const AreaPart part = part_of(todo[t]);
+          std::string why_whole = why_whole_[todo[t]];
           if (part.choice.only) try {
               AreaOutcome outcome = outcome_of(build_area(of_area, part, child));
               outcome.in_part = true;
               return base::packed(outcome);
-            } catch (const WindowTooSmall&) {
-              // As a whole, then.
+            } catch (const WindowTooSmall& reason) {
+              why_whole = reason.what();
             }
-          return base::packed(outcome_of(build_area(of_area, parts_[todo[t]], child)));
+          AreaOutcome outcome = outcome_of(build_area(of_area, parts_[todo[t]], child));
+          outcome.why_whole = std::move(why_whole);
+          return base::packed(outcome);
         },
         [&](std::size_t t, base::ChildResult result) {
           note(result);
@@ -498,7 +523,10 @@ class AreaBuild {
     Json run = json_of(place + "/run.json");
     run["made_from"] = keys_[i];
     run["facts"] = facts_keys_[i];
-    run["in_part"] = outcome.in_part;
+    if (outcome.in_part)
+      run["looked_into"] = looks_.at(i).tiles.size();
+    else
+      run["looked_into_all_because"] = outcome.why_whole;
     run["below_quality"] = outcome.below_quality;
     run["open_walls"] = Json::array();
     for (const outputs::PartySide& side : outcome.open_walls)
@@ -577,6 +605,7 @@ class AreaBuild {
     std::string before;  ///< key of the records
   };
   std::map<std::size_t, Look> looks_;  ///< by index of the part
+  std::map<std::size_t, std::string> why_whole_;
   std::set<std::size_t> unconcerned_;  ///< parts in which nothing differs
   std::size_t at_once_ = 1, kept_ = 0;
   int jobs_ = 1;

@@ -444,7 +444,8 @@ class Updater {
       for (const std::string& entry : work_of(region_.cache(), RegionFolder::digits(*current))) {
         const std::size_t space = entry.find(' ');
         if (space == std::string::npos) continue;
-        const std::string area = entry.substr(0, space), kind = entry.substr(space + 1, entry.find('/', space) - space - 1);
+        const std::string area = entry.substr(0, space),
+                          kind = entry.substr(space + 1, entry.find('/', space) - space - 1);
         if (built.areas_taken_over.contains(area) ||
             (built.areas_in_part.contains(area) && kind != "tiles" && kind != kRecords && kind != kReaches))
           kept_work.insert(entry);
