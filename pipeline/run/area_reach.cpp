@@ -139,6 +139,14 @@ bool holds(const PlanBox& outer, const PlanBox& inner) {
                            outer.maximum.x >= inner.maximum.x && outer.maximum.y >= inner.maximum.y);
 }
 
+PlanBox common(const PlanBox& a, const PlanBox& b) {
+  if (a.empty() || b.empty()) return {};
+  PlanBox box;
+  box.minimum = {std::max(a.minimum.x, b.minimum.x), std::max(a.minimum.y, b.minimum.y)};
+  box.maximum = {std::min(a.maximum.x, b.maximum.x), std::min(a.maximum.y, b.maximum.y)};
+  return box.minimum.y > box.maximum.y ? PlanBox() : box;
+}
+
 PlanBox needed_around(const TileReach& reach, double rules) {
   PlanBox out = reach.far;
   out.include(grown(reach.near, std::max(kNetworkReach, rules)));

@@ -38,6 +38,7 @@ AreaReach reaches_of(const ReachInputs& inputs, std::span<const model::TileId> t
 double rules_reach(const districts::RuleSets& book);
 
 bool holds(const geometry::PlanBox& outer, const geometry::PlanBox& inner);
+geometry::PlanBox common(const geometry::PlanBox& a, const geometry::PlanBox& b);
 
 /// What must be read for the work on tiles with these reaches. \param rules  m, how far district rules look at most
 geometry::PlanBox needed_around(const TileReach& reach, double rules);

@@ -313,9 +313,14 @@ void note_reaches(const TileChoice& area, const ReachInputs& inputs, const distr
   for (const auto& [tile, told] : records)
     if (!area.only || area.only->contains(tile)) tiles.push_back(tile);
   const geometry::PlanBox read = within_window(area.window, inputs.located.projection);
+  // What counts for an area lies within this (kHalo), however far boxes of boxes reach.
+  constexpr double kBent = 100;  // m: sides of windows are, in the projection
+  const georef::GeoBox halo = georef::with_halo(area.id, kHalo - kBent);
+  const geometry::PlanBox most =
+      within_window({halo.west, halo.south, halo.east, halo.north}, inputs.located.projection);
   for (const auto& [tile, reach] : reaches_of(inputs, tiles)) {
     records[tile].reach = reach;
-    if (area.only && !holds(read, needed_around(reach, rules_reach(book))))
+    if (area.only && !holds(read, common(most, needed_around(reach, rules_reach(book)))))
       throw WindowTooSmall("tile " + text_of(tile) + " hears of more");
   }
 }

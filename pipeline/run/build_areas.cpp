@@ -376,11 +376,13 @@ class AreaBuild {
     needed.maximum = {needed.maximum.x + kMore, needed.maximum.y + kMore};
     const std::array<double, 4> around = window_around(needed, projection);
     const auto& all = part.choice.window;
-    Look& look = looks_[i];
-    look.tiles = std::move(tiles), look.before = made_from;
-    look.window = {std::max(around[0], all[0]), std::max(around[1], all[1]), std::min(around[2], all[2]),
-                   std::min(around[3], all[3])};
-    // Where as much is read as for the whole area, its border is that of all that counts.
+    const std::array<double, 4> window{std::max(around[0], all[0]), std::max(around[1], all[1]),
+                                       std::min(around[2], all[2]), std::min(around[3], all[3])};
+    constexpr double kMostOfAll = 0.6;  // of what is read for the area: above it looking twice would cost more
+    const auto size = [](const std::array<double, 4>& w) { return (w[2] - w[0]) * (w[3] - w[1]); };
+    why_whole_[i] = "most of it is concerned";
+    if (size(window) > kMostOfAll * size(all)) return;
+    looks_[i] = {std::move(tiles), window, made_from};
   }
 
   /// The area, of which only some tiles are looked into.
