@@ -28,9 +28,12 @@ constexpr double kTownReach = 3 * context::kCellSize;
 class Reaches {
  public:
   explicit Reaches(const ReachInputs& in) : in_(in), store_(in.prepared.repaired.footprints) {
-    index_ = footprints::index_of(store_);
+    houses_ = footprints::index_of(store_);
+    rows_ = geometry::BoxIndex(in_.prepared.repaired.row_boxes);
+    std::vector<PlanBox> boxes;
     for (const context::Block& block : in_.prepared.context.blocks)
-      block_boxes_.push_back(block.too_large ? PlanBox() : geometry::box_of(block.polygon.outer.points));
+      boxes.push_back(block.too_large ? PlanBox() : geometry::box_of(block.polygon.outer.points));
+    blocks_ = geometry::BoxIndex(std::move(boxes));
   }
 
   /// \param own  what lies in the tile, as mapped and as repaired
@@ -53,29 +56,50 @@ class Reaches {
   }
 
  private:
+  /// What reaches out of a box crosses one of its sides.
+  template <class Take>
+  static void crossing(const geometry::BoxIndex& index, const PlanBox& box, const Take& take) {
+    if (box.empty()) return;
+    const auto [x0, y0] = box.minimum;
+    const auto [x1, y1] = box.maximum;
+    for (const auto& [from, to] :
+         {std::pair(Point2{x0, y0}, Point2{x1, y0}), std::pair(Point2{x0, y1}, Point2{x1, y1}),
+          std::pair(Point2{x0, y0}, Point2{x0, y1}), std::pair(Point2{x1, y0}, Point2{x1, y1})}) {
+      PlanBox side;
+      side.include(from), side.include(to);
+      for (const std::uint32_t i : index.near(side, 0)) take(i);
+    }
+  }
+
   /// The box grown, and the buildings that are touched then.
   PlanBox touched(const PlanBox& box, double distance) const {
-    PlanBox out = grown(box, distance);
-    for (const std::uint32_t b : index_.near(box, distance)) out.include(store_[b].box);
+    const PlanBox around = grown(box, distance);
+    PlanBox out = around;
+    crossing(houses_, around, [&](std::uint32_t b) { out.include(store_[b].box); });
     return out;
   }
+  /// And the blocks of its buildings.
   PlanBox with_blocks(const PlanBox& box) const {
     PlanBox out = box;
-    for (const std::uint32_t b : index_.near(box, 0))
-      if (const std::uint32_t block = in_.prepared.context.block_of[b]; block != model::kNoIndex)
-        out.include(block_boxes_[block]);
+    crossing(blocks_, box, [&](std::uint32_t block) {
+      const std::vector<std::uint32_t>& buildings = in_.prepared.context.figures[block].buildings;
+      if (std::ranges::any_of(buildings, [&](std::uint32_t b) { return store_[b].box.near(box, 0); }))
+        out.include(blocks_.box(block));
+    });
     return out;
   }
+  /// And their rows.
   PlanBox with_rows(const PlanBox& box) const {
     PlanBox out = box;
-    for (const std::uint32_t b : index_.near(box, 0)) out.include(in_.prepared.repaired.row_boxes[b]);
+    crossing(rows_, box, [&](std::uint32_t b) {
+      if (store_[b].box.near(box, 0)) out.include(rows_.box(b));
+    });
     return out;
   }
 
   const ReachInputs& in_;
   const footprints::FootprintStore& store_;
-  geometry::BoxIndex index_;
-  std::vector<PlanBox> block_boxes_;  ///< empty for those that are too large
+  geometry::BoxIndex houses_, rows_, blocks_;  ///< blocks: empty boxes for those that are too large
 };
 
 }  // namespace
