@@ -1,7 +1,8 @@
-// An extract on disk, cut into areas of the quadtree, so that each can be read alone: how a region of any size is built in bounded
-// memory (ARCHITECTURE.md, law 5).
+// An extract on disk, cut into cells of the quadtree, so that any window of it can be read alone: how a region of any size is built in
+// bounded memory (ARCHITECTURE.md, law 5), and how a night finds what differs from the one before.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -14,8 +15,6 @@ namespace blockrand::importers::osm {
 
 /// What lies in a store as a whole.
 struct StoreFigures {
-  int level = 0;                                      ///< of its areas
-  double halo = 0;                                    ///< m
   std::uint64_t nodes = 0, ways = 0, relations = 0;   ///< in the extract
   std::uint64_t missing_nodes = 0, missing_ways = 0;  ///< referenced by a kept object, not in the extract
   std::string data_time;                              ///< newest time of the extract's objects, ISO 8601; or empty
@@ -25,46 +24,73 @@ struct StoreFigures {
   bool cleaned_texts = false;                         ///< NUL characters were replaced
 };
 
-/// The objects that an area needs: those that touch it or what lies within the halo around it, each whole.
+/// An area of the quadtree that objects touch, with or without buildings.
 struct StoredArea {
   model::TileId tile;
-  std::string sha256;       ///< of these objects
+  std::string sha256;  ///< of what is read of the area without what lies around
+};
+
+/// What a window reads.
+struct StoredPart {
+  std::string sha256;
   std::uint64_t bytes = 0;  ///< on disk
 };
 
-/// Writes a store in one pass over the nodes and two over ways and relations. What spans at most kWholeSpan is in every area that its
-/// box touches; a larger way in those that it leads through, a larger relation in those of its ways.
+/// An object that another store has otherwise, or lacks. Both versions together where they lie in one cell, else each by itself.
+struct ChangedObject {
+  model::OsmId id;
+  std::uint32_t kinds = 0;      ///< model::FeatureKind bits
+  bool building = false;        ///< a building or a part of one, or a relation of these
+  bool network = false;         ///< may bound blocks: a street, railway, water or covered way
+  bool placeless = false;       ///< a version has no known position at all
+  std::array<double, 4> box{};  ///< west, south, east, north in degrees
+};
+
+/// Writes a store in one pass over the nodes and two over ways and relations. An object lies in one cell, the smallest whose size is
+/// that of its box or more, and is found in half a cell around it; a relation has all of its ways and relations with it. What spans more
+/// than kWholeSpan lies where its lines lead through.
 ///
 /// Memory: relations with their members, the boxes of their ways, 64 MB of objects on their way to the disk and as much of nodes;
-/// nothing that grows with the buildings.
+/// nothing that grows with the buildings but 150 bytes for each cell of about a square mile.
 /// \param folder  is made; what is there of an earlier store is replaced
 /// \returns false where the extract is not sorted by type and id, or has several versions of an object: apply_changes() without
 ///          changes makes such a one of it
 /// \throws base::InputError   as read_extract
 /// \throws base::OutputError  the store cannot be written
-bool write_store(const std::string& extract, const std::string& folder, int level, double halo);
+bool write_store(const std::string& extract, const std::string& folder);
 
 /// What spans more cannot be what stands around one area: what holds the area as a whole is told to it (RegionFacts::areas). Degrees.
 inline constexpr double kWholeSpan = 1.0;
+
+/// The files of a store, below its folder: objects, index.
+inline constexpr std::array<const char*, 2> kStoreFiles{"objects", "index"};
 
 /// A store that is read. Each piece is checked as it is read.
 class ExtractStore {
  public:
   /// \throws base::InputError  missing or damaged
-  explicit ExtractStore(std::string folder);
+  explicit ExtractStore(const std::string& folder);
+  /// Of its two files, wherever they lie (store_files). \throws as above
+  ExtractStore(std::string objects, const std::string& index);
   ~ExtractStore();
   ExtractStore(ExtractStore&&) noexcept;
 
   const StoreFigures& figures() const;
-  /// In the order of their tiles: all that an object touches, with or without buildings.
-  const std::vector<StoredArea>& areas() const;
+  /// In the order of their tiles: all that an object may touch. \param level  of the quadtree
+  std::vector<StoredArea> areas(int level) const;
+  /// \param window  west, south, east, north in degrees
+  StoredPart part(const std::array<double, 4>& window) const;
   /// Building objects without any known position: they belong to no area.
   bool has_placeless() const;
 
-  /// As read_extract of the whole with the box of the options, where that lies within the area and its halo; counts of the file are
-  /// those of the area's objects. \param placeless  objects without any known position, too
+  /// As read_extract of the whole with the box of the options; counts of the file are those of the cells that the box meets.
+  /// \param placeless  objects without any known position, too
   /// \throws base::InputError  damaged
-  model::Extract read(const model::TileId& area, const ReadOptions& options, bool placeless) const;
+  model::Extract read(const ReadOptions& options, bool placeless) const;
+
+  /// What differs from an earlier store, in the order of cells. Reads the cells that differ.
+  /// \throws base::InputError  one of both is damaged
+  std::vector<ChangedObject> changes_since(const ExtractStore& before) const;
 
  private:
   struct State;

@@ -320,6 +320,13 @@ class Totals {
 
 }  // namespace
 
+RepairTotals totals_of(std::span<const StoredFootprint> outlines) {
+  Totals totals;
+  for (const StoredFootprint& f : outlines)
+    if (!f.box.empty() && f.settled == model::ObjectState::pending) totals.add(f);
+  return totals.finish();
+}
+
 RepairedExtract repair_extract(const Extract& extract, std::span<const Shard> shards,
                                const georef::Projection& projection, const repair::KeptNodes& kept,
                                const repair::RepairOptions& options, int workers, base::Progress& progress,
@@ -345,6 +352,19 @@ RepairedExtract repair_extract(const Extract& extract, std::span<const Shard> sh
   for (std::size_t i = 1; i < plans.size(); ++i)
     if (shard_of(plans[i]) != shard_of(plans[i - 1])) batches.push_back(i);
   batches.push_back(plans.size());
+  out.rows_begun.assign(shards.size(), 0);
+  out.row_boxes.assign(count, {});
+  for (const TerraceRowPlan& plan : plans) {
+    if (plan.buildings.size() > 1) ++out.rows_begun[static_cast<std::size_t>(shard_of(plan) - out.first.begin()) - 1];
+    PlanBox box;
+    for (const std::vector<std::uint32_t>* buildings : {&plan.buildings, &plan.beyond})
+      for (const std::uint32_t b : *buildings) box.include(mapped[b].box);
+    // That the row goes on for so long is known from what lies within this distance.
+    const double more = plan.beyond.empty() ? 2 * options.max_shift : kMaxTerraceRowExtent;
+    box.minimum = {box.minimum.x - more, box.minimum.y - more},
+    box.maximum = {box.maximum.x + more, box.maximum.y + more};
+    for (const std::uint32_t b : plan.buildings) out.row_boxes[b] = box;
+  }
   out.footprints = FootprintStore(count);
   for (std::uint32_t b = 0; b < count; ++b)  // those without an outline are in no row
     if (mapped[b].box.empty()) out.footprints.set(b, mapped[b], {});

@@ -35,10 +35,16 @@ struct RepairTotals {
 /// The repaired outlines. The number of a building is its place in the shards, in their order.
 struct RepairedExtract {
   FootprintStore footprints;
-  std::vector<std::uint32_t> first;    ///< per shard: the number of its first building
+  std::vector<std::uint32_t> first;       ///< per shard: the number of its first building
+  std::vector<std::uint64_t> rows_begun;  ///< per shard: rows of two buildings and more whose least building is in it
+  std::vector<PlanBox>
+      row_boxes;  ///< per building: what its row and its place in it depend on; empty without an outline
   std::vector<model::ReportRow> rows;  ///< sorted by object
   RepairTotals totals;
 };
+
+/// What repair did to some of the outlines: without `rows` and `at_cuts`, which no outline tells.
+RepairTotals totals_of(std::span<const StoredFootprint> outlines);
 
 /// Repairs every outline of the shards. Deterministic for any number of workers. A building's outline depends on data
 /// within kMaxTerraceRowExtent of its row (terrace_rows.h).

@@ -22,16 +22,17 @@ Account::Account(model::Extract& extract, std::vector<model::ReportRow> rows)
   earlier_ = rows_;
 }
 
-outputs::FinalState Account::final_state_of(const Outcome& o) const {
+outputs::FinalState Account::final_state_of(const Outcome& o, const model::Extract& extract) const {
   // Where members of a relation are missing, that is why nothing is enclosed.
   const bool no_area = o.code == IssueCode::zero_area || o.code == IssueCode::too_few_points;
-  const bool lacks_members = no_area && incomplete_.contains(extract_.buildings[o.index].id);
+  const bool lacks_members = no_area && incomplete_.contains(extract.buildings[o.index].id);
   return {o.state, lacks_members ? IssueCode::outline_incomplete : o.code, o.related};
 }
 
-std::function<outputs::FinalState(std::uint32_t)> Account::final_states(const std::vector<Outcome>& outcomes) const {
+std::function<outputs::FinalState(std::uint32_t)> Account::final_states(const std::vector<Outcome>& outcomes,
+                                                                        const model::Extract& extract) const {
   std::map<std::uint32_t, outputs::FinalState> final_states;
-  for (const Outcome& o : outcomes) final_states[o.index] = final_state_of(o);
+  for (const Outcome& o : outcomes) final_states[o.index] = final_state_of(o, extract);
   return [final_states = std::move(final_states)](std::uint32_t index) {
     const auto found = final_states.find(index);
     return found == final_states.end() ? outputs::FinalState{} : found->second;
@@ -41,7 +42,7 @@ std::function<outputs::FinalState(std::uint32_t)> Account::final_states(const st
 void Account::take(const Outcomes& outcomes, std::vector<model::ReportRow> rows, BuildSummary& summary) {
   for (const Outcome& o : outcomes.list) {
     MappedBuilding& object = extract_.buildings[o.index];
-    const outputs::FinalState final_state = final_state_of(o);
+    const outputs::FinalState final_state = final_state_of(o, extract_);
     decided_[o.index] = 1;
     object.state = final_state.state;
     object.code = final_state.code;

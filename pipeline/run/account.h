@@ -25,7 +25,9 @@ class Account {
   /// Rows from before the tiles, sorted.
   std::span<const model::ReportRow> earlier() const { return earlier_; }
   /// What becomes of an object, looked up by its index: of a tile's objects. Safe from several threads.
-  std::function<outputs::FinalState(std::uint32_t)> final_states(const std::vector<Outcome>& outcomes) const;
+  /// \param extract  that the indices are of: that of the account, or what the tile was worked on with
+  std::function<outputs::FinalState(std::uint32_t)> final_states(const std::vector<Outcome>& outcomes,
+                                                                 const model::Extract& extract) const;
 
   /// Takes over what a tile decided, in tile order.
   void take(const Outcomes& outcomes, std::vector<model::ReportRow> rows, BuildSummary& summary);
@@ -41,7 +43,7 @@ class Account {
   const std::vector<model::ReportRow>& rows() const { return rows_; }
 
  private:
-  outputs::FinalState final_state_of(const Outcome& outcome) const;
+  outputs::FinalState final_state_of(const Outcome& outcome, const model::Extract& extract) const;
 
   model::Extract& extract_;
   std::vector<model::ReportRow> rows_, earlier_;

@@ -316,7 +316,7 @@ void Overview::write(base::StagedFolder& folder, const std::vector<std::string>&
   if (s.common.contains("terrain")) j["terrain"] = s.common["terrain"];
   j["region"] = region_json(s.facts);
   Json counts = s.counts;
-  // Of what lies around an area as well: no sums.
+  // Counted otherwise than in a build at once.
   for (const char* of_windows : {"areas_with_holes", "old_style_multipolygons"}) counts.erase(of_windows);
   counts["missing_nodes"] = s.data.missing_nodes, counts["missing_ways"] = s.data.missing_ways;
   j["counts"] = std::move(counts);

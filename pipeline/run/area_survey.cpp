@@ -71,7 +71,7 @@ class Surveyor {
     const georef::GeoBox box = georef::bounds(tile);
     importers::osm::ReadOptions read;
     read.bbox = {box.west, box.south, box.east, box.north};
-    model::Extract extract = store_.read(tile, read, placeless);
+    model::Extract extract = store_.read(read, placeless);
     AreaFacts facts;
     std::set<std::uint32_t> matched;
     attributes::Overrides overrides = overrides_;
@@ -153,8 +153,9 @@ RegionSurvey survey_region(const importers::osm::ExtractStore& store, const Buil
   std::map<std::uint32_t, std::string> why;
   std::vector<attributes::NamedPlaceQuestion> named_places;
   std::map<std::tuple<std::string, std::string, model::OsmId>, attributes::PinnedArea> pins;
-  for (const importers::osm::StoredArea& area : store.areas()) {
-    AreaFacts facts = surveyor.look(area, &area == store.areas().data() && store.has_placeless(), memo);
+  const std::vector<importers::osm::StoredArea> areas = store.areas(options.areas);
+  for (const importers::osm::StoredArea& area : areas) {
+    AreaFacts facts = surveyor.look(area, &area == areas.data() && store.has_placeless(), memo);
     if (facts.objects > 0) survey.objects[area.tile] = facts.objects;
     centres.insert(centres.end(), facts.centres.begin(), facts.centres.end());
     matched.insert(facts.matched.begin(), facts.matched.end());

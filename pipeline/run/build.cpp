@@ -66,7 +66,7 @@ struct Place {
 void record_extract(const BuildOptions& options, const BuildInputs& inputs, const LocatedExtract& located,
                     BuildRecord& record) {
   record.inputs = input_files(options, inputs);
-  record.data_sha256 = data_sha256(located.extract);
+  if (!record.area) record.data_sha256 = data_sha256(located.extract);
   if (inputs.terrain) record.terrain = inputs.terrain->describe();
   record.heights = inputs.heights;
   record.data_time = located.extract.data_time;
@@ -182,19 +182,27 @@ void note_tile(WorkCache& cache, const std::string& tile, const TileKey& key, st
   cache.note_parts(tile, parts);
 }
 
+/// A tile of the build.
+struct TileToTell {
+  model::TileId tile;
+  std::size_t place = 0;             ///< among the shards that outputs know
+  std::optional<std::size_t> shard;  ///< empty: it is not looked into, but what an earlier run made of it taken
+  std::string key;                   ///< of that
+};
+
 /// What working on `todo` would do: nothing is worked on.
-void plan_tiles(std::span<const std::size_t> todo, std::span<const footprints::Shard> shards, const TileKeys* keys,
-                WorkCache* cache, int workers, BuildSummary& summary) {
+void plan_tiles(std::span<const TileToTell> todo, const TileKeys* keys, WorkCache* cache, int workers,
+                BuildSummary& summary) {
   std::uint64_t known = 0, microseconds = 0;
-  for (const std::size_t shard : todo) {
-    const TileKey key = keys ? keys->key(shard) : TileKey();
-    if (keys && tile_is_kept(key.key, *cache)) {
+  for (const TileToTell& tile : todo) {
+    const TileKey key = keys && tile.shard ? keys->key(*tile.shard, tile.place) : TileKey();
+    if (!tile.shard || (keys && tile_is_kept(key.key, *cache))) {
       ++summary.tiles_kept;
       continue;
     }
     ++summary.tiles_built;
     if (!keys) continue;
-    const std::string name = outputs::tile_name(shards[shard].tile);
+    const std::string name = outputs::tile_name(tile.tile);
     for (const std::string_view why : why_built(*cache, name, key)) ++summary.tiles_built_for[std::string(why)];
     if (const auto before = cache->parts_before(name); before && before->size() > kTilePartCount)
       ++known, microseconds += before->back();
@@ -277,6 +285,78 @@ void publish(base::StagedFolder& folder, const BuildOptions& options, BuildSumma
   }
 }
 
+// ---- areas
+
+/// Of the tiles that are looked into, and of the others as they were.
+AreaRecord record_tiles(const RecordInputs& inputs, AreaRecord before) {
+  const std::optional<std::set<model::TileId>>& only = inputs.area.only;
+  AreaRecord tiles = record_area(inputs, [&](const model::TileId& t) { return !only || only->contains(t); });
+  for (auto& [tile, told] : before)
+    if (!only->contains(tile)) tiles.emplace(tile, std::move(told));
+  return tiles;
+}
+
+/// \throws WindowTooSmall  they are not kept any more
+AreaRecord records_before(const AreaPart& part, WorkCache* cache) {
+  if (cache)
+    if (const std::optional<WorkCache::Found> found = cache->find(kRecords, part.before_key)) try {
+        return base::unpacked<AreaRecord>(found->bytes);
+      } catch (const base::UnpackError&) {
+      }
+  throw WindowTooSmall("records of tiles are missing");
+}
+
+/// Of the tiles that are looked into. \throws WindowTooSmall  more must be read for them
+void note_reaches(const TileChoice& area, const ReachInputs& inputs, const districts::RuleSets& book,
+                  AreaRecord& records) {
+  std::vector<model::TileId> tiles;
+  for (const auto& [tile, told] : records)
+    if (!area.only || area.only->contains(tile)) tiles.push_back(tile);
+  const geometry::PlanBox read = within_window(area.window, inputs.located.projection);
+  // What counts for an area lies within this (kHalo), however far boxes of boxes reach.
+  constexpr double kBent = 100;  // m: sides of windows are, in the projection
+  const georef::GeoBox halo = georef::with_halo(area.id, kHalo - kBent);
+  const geometry::PlanBox most =
+      within_window({halo.west, halo.south, halo.east, halo.north}, inputs.located.projection);
+  for (const auto& [tile, reach] : reaches_of(inputs, tiles)) {
+    records[tile].reach = reach;
+    if (area.only && !holds(read, common(most, needed_around(reach, rules_reach(book)))))
+      throw WindowTooSmall("tile " + text_of(tile) + " hears of more");
+  }
+}
+
+/// What outputs show of a tile. \throws WindowTooSmall  of one that is not looked into it is something else now
+void note_shown(std::span<const TileToTell> todo, const OpenOutputs& open, AreaRecord& records) {
+  for (const TileToTell& t : todo) {
+    std::string shown;
+    for (const auto& output : open.list) shown += output->reads_of_tile(t.place);
+    TileRecord& record = records.at(t.tile);
+    if (!t.shard && record.shown != shown) throw WindowTooSmall("pictures show tile " + text_of(t.tile));
+    record.shown = std::move(shown);
+  }
+}
+
+/// In tile order. \param area  null: all that is looked into
+std::vector<TileToTell> tiles_to_tell(std::span<const footprints::Shard> shards,
+                                      std::span<const std::size_t> looked_into, const AreaAsTold* area,
+                                      const AreaRecord& records) {
+  std::vector<TileToTell> out;
+  if (!area) {
+    for (const std::size_t shard : looked_into) out.push_back({shards[shard].tile, shard, shard, {}});
+    return out;
+  }
+  std::map<model::TileId, std::size_t> looked;
+  for (const std::size_t shard : looked_into) looked[shards[shard].tile] = shard;
+  for (std::size_t place = 0; place < area->shards.size(); ++place) {
+    TileToTell& t = out.emplace_back(TileToTell{area->shards[place].tile, place, {}, {}});
+    if (const auto shard = looked.find(t.tile); shard != looked.end())
+      t.shard = shard->second;
+    else
+      t.key = records.at(t.tile).key;
+  }
+  return out;
+}
+
 /// \param part  of a build in areas; null: everything, or what the options choose
 BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part, base::Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
@@ -299,8 +379,8 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   ImageryStage imagery(options, inputs, located, progress);
 
   // The whole extract: footprints, context, evidence.
-  record_extract(options, inputs, located, record);
   if (tile && tile->is_area()) record.area = tile->id;
+  record_extract(options, inputs, located, record);
   model::Report report = override_extract(options, inputs, extract, progress);
   const std::optional<base::Memo> memo = memo_of(cache.get(), options, record);
   PreparedExtract prepared = prepare_extract(
@@ -313,7 +393,27 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   const footprints::RepairedExtract& repaired = prepared.repaired;
   const context::ContextExtract& context = prepared.context;
   report.append(std::move(prepared.report));
-  record.repair = repaired.totals;
+  // What documents tell: of an area what lies in it, whatever was read around it.
+  AreaRecord tiles_here;
+  std::optional<AreaAsTold> area;
+  if (record.area) {
+    report.append(std::move(extract.report));
+    tiles_here = record_tiles({.extract = extract,
+                               .shards = shards,
+                               .repaired = repaired,
+                               .context = context,
+                               .projection = projection,
+                               .rows = report.rows,
+                               .area = *tile},
+                              tile->only ? records_before(*part, cache.get()) : AreaRecord());
+    if (cache) note_reaches(*tile, {located, prepared, inputs.tables, *tile}, inputs.rules.book, tiles_here);
+    area = told_area(tiles_here, located.facts.coverage);
+    report.rows = std::move(area->rows);
+    record.data_sha256 = area->data_sha256, record.data_time = area->data_time, record.counts = area->counts;
+  }
+  Extract& told = area ? area->extract : extract;
+  const std::vector<footprints::Shard>& told_shards = area ? area->shards : shards;
+  record.repair = area ? area->repaired.totals : repaired.totals;
   record.facts = located.facts;
   imagery.tell(record);
   const context::VicinityFinder vicinity(extract, repaired.footprints, context, prepared.labels.get());
@@ -328,16 +428,13 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
     for (const std::string& what : assigner.unanswered()) progress.warn(what);
   }
 
-  const std::vector<std::size_t> todo = shards_to_build(shards, tile);
-  std::vector<footprints::Shard> shards_here;  // of an area: those around it are empty for outputs
-  if (tile && tile->is_area())
-    for (const footprints::Shard& shard : shards)
-      shards_here.push_back(georef::contains(tile->id, shard.tile) ? shard : footprints::Shard{shard.tile, {}});
+  const std::vector<std::size_t> looked_into = shards_to_build(shards, tile);
+  const std::vector<TileToTell> todo = tiles_to_tell(shards, looked_into, area ? &*area : nullptr, tiles_here);
   std::uint64_t to_build = 0;
-  for (const std::size_t shard : todo) to_build += shards[shard].seeds.size();
+  for (const TileToTell& t : todo) to_build += told_shards[t.place].seeds.size();
   if (!options.plan && !options.measure) {
     std::vector<footprints::Shard> here;
-    for (const std::size_t shard : todo) here.push_back(shards[shard]);
+    for (const std::size_t shard : looked_into) here.push_back(shards[shard]);
     check_free_space(options, disk_bytes(town_size(extract, here).all, options), folder.free_bytes());
   }
   summary.store_bytes = current_memory();
@@ -345,7 +442,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   // The tiles: every stage, then every output.
   const int workers = base::worker_count(options.jobs);
   const std::size_t in_flight = static_cast<std::size_t>(workers) * (record.area ? 1 : 2) + 2;
-  Account account(extract, std::move(report.rows));
+  Account account(told, std::move(report.rows));
   outputs::OutputOptions output_options = options.outputs;
   output_options.imagery = imagery.observations() != nullptr;
   output_options.imagery_pictures = output_options.imagery && options.outputs.report && !inputs.images.empty();
@@ -359,10 +456,10 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
       .heights = record.heights,
       .data_time = record.data_time,
       .centre = located.facts.centre,
-      .extract = extract,
-      .shards = shards_here.empty() ? std::span<const footprints::Shard>(shards) : shards_here,
-      .repaired = repaired,
-      .context = context,
+      .extract = told,
+      .shards = told_shards,
+      .repaired = area ? area->repaired : repaired,
+      .context = area ? area->context : context,
       .imagery = imagery.observations(),
       .images = inputs.images,
       .seen = outputs::seen_outlines(imagery.observations(), repaired.footprints),
@@ -372,6 +469,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
       .workers = workers,
       .memo = memo ? &*memo : nullptr};
   const OpenOutputs open(output_context);
+  if (area) note_shown(todo, open, tiles_here);
   const context::Ground ground(inputs.terrain ? &*inputs.terrain : nullptr, options.ground_height, projection);
   std::atomic<std::int64_t> context_time = 0;
   const evidence::StyleInputs style_inputs{prepared.facts, prepared.tags, prepared.styles, inputs.tables};
@@ -404,7 +502,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
     keys.emplace(tile_inputs, inputs, shared_key(options, inputs, record), account.earlier(), open.list);
   if (options.plan) {
     progress.begin("look for kept tiles");
-    plan_tiles(todo, shards, keys ? &*keys : nullptr, cache.get(), workers, summary);
+    plan_tiles(todo, keys ? &*keys : nullptr, cache.get(), workers, summary);
     progress.end();
     return summary;
   }
@@ -414,38 +512,52 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   std::uint64_t done = 0;
   const auto work = [&](std::size_t i) {
     TileResult& slot = slots[i % in_flight];
-    if (!keys) {
-      slot = work_on_tile(todo[i], tile_inputs, open, account);
+    const TileToTell& t = todo[i];
+    if (!t.shard) {
+      std::optional<TileResult> kept = cache ? kept_tile(t.key, open, told, folder, *cache) : std::nullopt;
+      if (!kept) throw WindowTooSmall("work on tile " + text_of(t.tile) + " is not kept");
+      slot = std::move(*kept);
+      cache->keep_note(outputs::tile_name(t.tile));
       return;
     }
-    const TileKey key = keys->key(todo[i]);
-    const std::string name = outputs::tile_name(shards[todo[i]].tile);
-    std::optional<TileResult> kept = kept_tile(key.key, open, extract, folder, *cache);
+    if (!keys) {
+      slot = work_on_tile(*t.shard, t.place, tile_inputs, open, account, told);
+      return;
+    }
+    const TileKey key = keys->key(*t.shard, t.place);
+    const std::string name = outputs::tile_name(t.tile);
+    std::optional<TileResult> kept = kept_tile(key.key, open, told, folder, *cache);
     if (kept) {
       slot = std::move(*kept);
     } else {
-      slot = work_on_tile(todo[i], tile_inputs, open, account);
+      slot = work_on_tile(*t.shard, t.place, tile_inputs, open, account, told);
       slot.why = why_built(*cache, name, key);
-      if (slot.may_be_kept) keep_tile(key.key, slot, open, extract, folder.staging_path(), *cache);
+      if (slot.may_be_kept) keep_tile(key.key, slot, open, told, folder.staging_path(), *cache);
     }
+    if (slot.may_be_kept) slot.key = key.key;
     note_tile(*cache, name, key, slot.microseconds);
   };
   const auto consume = [&](std::size_t i) {
     TileResult result = std::move(slots[i % in_flight]);
     ++(result.kept ? summary.tiles_kept : summary.tiles_built);
     for (const std::string_view why : result.why) ++summary.tiles_built_for[std::string(why)];
-    sums.take(std::move(result), todo[i], options, open, account, record);
-    done += shards[todo[i]].seeds.size();
+    if (area && todo[i].shard) tiles_here[todo[i].tile].key = result.key;
+    sums.take(std::move(result), todo[i].place, options, open, account, record);
+    done += told_shards[todo[i].place].seeds.size();
     progress.advance_to(done);
   };
   base::ordered_parallel(todo.size(), workers, in_flight, work, consume);
   sums.settle(record);
   warn_of_terrain(inputs, progress);
-  account.close(tile, shards, todo, summary);
+  account.close(area ? std::nullopt : tile, shards, looked_into, summary);
   if (!options.measure) refuse_shrunk(options, summary, place.earlier);
 
   progress.begin("documents", open.list.size() + 2);
   finish_outputs(open, sums.whole, account, record, progress);
+  if (cache && part && !part->record_key.empty()) {
+    cache->keep(kRecords, part->record_key, base::packed(tiles_here), {}, {});
+    cache->keep(kReaches, part->record_key, base::packed(reaches_in(tiles_here)), {}, {});
+  }
   if (cache) tell_cache(*cache, options, summary, progress);
   folder.write("build.json", build_json(options, record));
   progress.end();

@@ -30,6 +30,7 @@ struct BuildSummary : outputs::ObjectCounts {
   std::map<std::string, std::uint64_t> tiles_built_for;
   std::uint64_t areas = 0, areas_kept = 0;  ///< of a build in areas: all, and those of the earlier build
   std::set<std::string> areas_taken_over;   ///< the latter by name
+  std::set<std::string> areas_in_part;      ///< those of which only some tiles were looked into
   std::set<std::string> kept_work_of_areas;  ///< as kept_work, each behind the area that used it: "11/1093/805 tiles/…"
   std::vector<outputs::PartySide> open_walls;  ///< of an area: party walls whose other side is not in it
   std::set<std::string> kept_work;             ///< what the run used or left in the cache (WorkCache::used)

@@ -60,28 +60,37 @@ struct AreaOutcome {
   std::vector<std::string> unaccounted;
   std::string folder;
   std::vector<outputs::PartySide> open_walls;
+  bool in_part = false;   ///< only some tiles were looked into
+  std::string why_whole;  ///< why all were
 };
 
 AreaOutcome outcome_of(BuildSummary&& s) {
-  return {s.tiles_built,          s.tiles_kept,    s.planned_tile_seconds,   std::move(s.tiles_built_for),
-          std::move(s.kept_work), s.below_quality, std::move(s.unaccounted), std::move(s.folder),
-          std::move(s.open_walls)};
+  return {s.tiles_built,
+          s.tiles_kept,
+          s.planned_tile_seconds,
+          std::move(s.tiles_built_for),
+          std::move(s.kept_work),
+          s.below_quality,
+          std::move(s.unaccounted),
+          std::move(s.folder),
+          std::move(s.open_walls),
+          false,
+          {}};
 }
 
 /// The extract as a store, sorted first where it is not. In a process of its own, so that its buffers are gone afterwards.
 /// \returns  its peak of memory, bytes
-std::uint64_t divide(const BuildOptions& options, int level, const std::string& work, base::Progress& progress) {
+std::uint64_t divide(const BuildOptions& options, const std::string& work, base::Progress& progress) {
   const base::ChildResult result = base::run_in_child(options.input, [&](base::Progress& child) {
     base::keep_memory_low();
     std::error_code error;
     fs::create_directories(work, error);
     const std::string store = work + "/store", sorted = work + "/sorted.osm.pbf";
-    if (!importers::osm::write_store(options.input, store, level, kHalo)) {
+    if (!importers::osm::write_store(options.input, store)) {
       const importers::osm::AppliedChanges applied = importers::osm::apply_changes(options.input, {}, sorted);
       if (applied.cleaned_texts)
         child.warn(told_input(options) + ": NUL characters in its texts were replaced; reports do not repeat that");
-      if (!importers::osm::write_store(sorted, store, level, kHalo))
-        throw std::logic_error("a sorted extract is not sorted");
+      if (!importers::osm::write_store(sorted, store)) throw std::logic_error("a sorted extract is not sorted");
       fs::remove(sorted, error);
     }
     return std::string();
@@ -143,7 +152,7 @@ class AreaBuild {
     { const BuildInputs inputs(options_); }  // what is wrong with them is told before the extract is read
     open_cache();
     progress_.begin("divide");
-    peak_ = divide(options_, options_.areas, work_, progress_);
+    peak_ = divide(options_, work_, progress_);
     const ExtractStore store(work_ + "/store");
     if (store.figures().cleaned_texts)
       progress_.warn(told_input(options_) + ": NUL characters in its texts were replaced; reports do not repeat that");
@@ -164,6 +173,8 @@ class AreaBuild {
     std::error_code error;
     fs::remove_all(work_, error);
     summary_.areas = parts_.size(), summary_.areas_kept = kept_;
+    if (cache_)
+      for (const std::string& entry : cache_->used()) summary_.kept_work.insert(entry);
     BuildSummary done = finished();
     folder_.write("run.json", run_json());
     publish(done);
@@ -208,24 +219,32 @@ class AreaBuild {
 
   /// Which areas there are, and what each is made from.
   void choose(const ExtractStore& store) {
-    std::map<TileId, std::string> hashes;
-    std::uint64_t largest = 0;
-    for (const importers::osm::StoredArea& a : store.areas())
-      if (survey_.objects.contains(a.tile)) hashes[a.tile] = a.sha256, largest = std::max(largest, a.bytes);
+    std::set<TileId> tiles;
+    for (const auto& [tile, objects] : survey_.objects) tiles.insert(tile);
     // What has no place needs one that tells of it.
-    if (hashes.empty()) hashes[store.areas().empty() ? TileId{options_.areas, 0, 0} : store.areas().front().tile] = "";
+    if (tiles.empty()) {
+      const std::vector<importers::osm::StoredArea> areas = store.areas(options_.areas);
+      tiles.insert(areas.empty() ? TileId{options_.areas, 0, 0} : areas.front().tile);
+    }
+    std::uint64_t largest = 0;
     const georef::Crs crs = georef::open_crs(survey_.facts.crs, survey_.facts.box);
     const georef::Projection projection(crs, survey_.facts.box);
-    for (const auto& [tile, hash] : hashes) {
+    for (const TileId& tile : tiles) {
       AreaPart& part = parts_.emplace_back(AreaPart{store, choose_area(tile, survey_.facts)});
+      const importers::osm::StoredPart stored = store.part(part.choice.window);
+      largest = std::max(largest, stored.bytes);
       part.choice.placeless = parts_.size() == 1 && store.has_placeless();
       base::Packer key;
-      key << program_identity() << options_.settings << named_.name << tile << hash;
+      key << program_identity() << options_.settings << named_.name << tile;
       pack_facts(key, part.choice, projection);
+      facts_keys_.push_back(base::sha256_of(key.bytes));
+      key << stored.sha256;
       // Objects without a place have no hash of their own.
       if (part.choice.placeless) key << store.figures().sha256;
       keys_.push_back(base::sha256_of(key.bytes));
+      if (cache_) part.record_key = keys_.back();
     }
+    find_changes(store, projection);
     const std::uint64_t each = kAreaBase + static_cast<std::uint64_t>(kPerStoredByte * static_cast<double>(largest));
     const int workers = base::worker_count(options_.jobs);
     at_once_ = 1;
@@ -241,12 +260,138 @@ class AreaBuild {
     jobs_ = std::max(1, workers / static_cast<int>(at_once_));
   }
 
-  /// The same area of the earlier build, where it was made from the same and is whole.
+  static std::string store_key(const std::string& data) {
+    base::Packer key;
+    key << program_identity() << data;
+    return base::sha256_of(key.bytes);
+  }
+
+  void because(const std::string& why) {
+    for (std::size_t i = 0; i < parts_.size(); ++i) why_whole_[i] = why;
+  }
+
+  /// What differs from the data of the earlier build, and which tiles it concerns. The store is kept for the next run.
+  void find_changes(const ExtractStore& store, const georef::Projection& projection) {
+    if (!cache_ || options_.settings.empty()) return;
+    constexpr std::string_view kStores = "stores";
+    std::vector<base::PublishedFile> files;
+    for (const char* name : importers::osm::kStoreFiles) {
+      std::error_code error;
+      const std::string path = work_ + "/store/" + name;
+      files.push_back({name, fs::file_size(path, error), base::sha256_file(path)});
+    }
+    cache_->keep(kStores, store_key(store.figures().sha256), {}, files, work_ + "/store");
+    if (options_.earlier.empty()) return;
+    if (earlier_record_.is_null()) earlier_record_ = json_of(options_.earlier + "/build.json");
+    const Json data = earlier_record_.value("data", Json::object());
+    const std::optional<WorkCache::Found> before = cache_->find(kStores, store_key(text_in(data, "sha256")));
+    if (!before || before->places.size() != files.size()) return because("the data of the earlier build are not kept");
+    std::vector<importers::osm::ChangedObject> changes;
+    try {
+      changes = store.changes_since(ExtractStore(before->places[0], before->places[1]));
+    } catch (const base::InputError&) {
+      return because("the data of the earlier build are damaged");
+    }
+    const double rules = rules_reach(BuildInputs(options_).rules.book);
+    for (std::size_t i = 0; i < parts_.size(); ++i) look_at_changes(i, changes, rules, projection);
+  }
+
+  /// Which tiles of an area the changes concern, where work on the others is kept.
+  void look_at_changes(std::size_t i, std::span<const importers::osm::ChangedObject> changes, double rules,
+                       const georef::Projection& projection) {
+    AreaPart& part = parts_[i];
+    const Json run = json_of(options_.earlier + "/" + area_path(part.choice.id) + "/run.json");
+    why_whole_[i] = "it is new";
+    if (!run.is_object()) return;
+    why_whole_[i] = "what is true of the region, or settings";
+    if (text_in(run, "facts") != facts_keys_[i] || text_in(run, "made_from") == keys_[i]) return;
+    why_whole_[i] = "records are not kept";
+    const std::string made_from = text_in(run, "made_from");
+    const std::optional<WorkCache::Found> found = cache_->find(kReaches, made_from);
+    if (!found || !cache_->has(kRecords, made_from)) return;
+    AreaReach reaches;
+    try {
+      reaches = base::unpacked<AreaReach>(found->bytes);
+    } catch (const base::UnpackError&) {
+      return;
+    }
+    std::set<TileId> tiles;
+    geometry::PlanBox needed;
+    const georef::GeoBox own = georef::bounds(part.choice.id);
+    for (const importers::osm::ChangedObject& change : changes) {
+      why_whole_[i] = "objects without a place";
+      if (change.placeless && part.choice.placeless) return;
+      if (change.placeless && change.box == std::array<double, 4>{}) continue;
+      // Somewhere else: no tile here reaches further than what is read for the area.
+      const auto& window = part.choice.window;
+      if (change.box[0] > window[2] || change.box[2] < window[0] || change.box[1] > window[3] ||
+          change.box[3] < window[1])
+        continue;
+      const geometry::PlanBox box = projected_box(change.box, projection);
+      const double beyond = std::max(change.network ? kNetworkReach : 0, change.kinds != 0 ? rules : 0);
+      constexpr double kBent = 1;  // m: sides of the box of an object in the projection
+      for (const auto& [tile, reach] : reaches)
+        if (reach.far.near(box, kBent) || reach.near.near(box, beyond + kBent)) tiles.insert(tile);
+      // Tiles that may tell of it for the first time.
+      const std::array<double, 4> here{std::max(change.box[0], own.west), std::max(change.box[1], own.south),
+                                       std::min(change.box[2], own.east), std::min(change.box[3], own.north)};
+      if (here[0] > here[2] || here[1] > here[3]) continue;
+      const auto at = [](double lon, double lat) {
+        return georef::tile_of(
+            {static_cast<std::int32_t>(std::lround(lon * 1e7)), static_cast<std::int32_t>(std::lround(lat * 1e7))},
+            footprints::kTileLevel);
+      };
+      const TileId low = at(here[0], here[1]), high = at(here[2], here[3]);
+      constexpr std::uint64_t kMostTiles = 64;  // as many as an area has: it is looked into as a whole
+      why_whole_[i] = change.id.text() + " spans much of it";
+      if ((high.x - low.x + std::uint64_t{1}) * (high.y - low.y + std::uint64_t{1}) > kMostTiles) return;
+      for (std::uint32_t y = low.y; y <= high.y; ++y)
+        for (std::uint32_t x = low.x; x <= high.x; ++x)
+          if (const TileId tile{footprints::kTileLevel, x, y}; georef::contains(part.choice.id, tile)) {
+            tiles.insert(tile);
+            const georef::GeoBox b = georef::bounds(tile);
+            const geometry::PlanBox ground = projected_box({b.west, b.south, b.east, b.north}, projection);
+            needed.include(needed_around({ground, ground}, rules));
+            needed.include(box);
+          }
+    }
+    if (tiles.empty()) {
+      unconcerned_.insert(i);
+      return;
+    }
+    for (const TileId& tile : tiles)
+      if (const auto reach = reaches.find(tile); reach != reaches.end())
+        needed.include(needed_around(reach->second, rules));
+    // Outlines that changed may reach a little further than before.
+    constexpr double kMore = 300;  // m
+    needed.minimum = {needed.minimum.x - kMore, needed.minimum.y - kMore};
+    needed.maximum = {needed.maximum.x + kMore, needed.maximum.y + kMore};
+    const std::array<double, 4> around = window_around(needed, projection);
+    const auto& all = part.choice.window;
+    const std::array<double, 4> window{std::max(around[0], all[0]), std::max(around[1], all[1]),
+                                       std::min(around[2], all[2]), std::min(around[3], all[3])};
+    constexpr double kMostOfAll = 0.6;  // of what is read for the area: above it looking twice would cost more
+    const auto size = [](const std::array<double, 4>& w) { return (w[2] - w[0]) * (w[3] - w[1]); };
+    why_whole_[i] = "most of it is concerned";
+    if (size(window) > kMostOfAll * size(all)) return;
+    looks_[i] = {std::move(tiles), window, made_from};
+  }
+
+  /// The area, of which only some tiles are looked into.
+  AreaPart part_of(std::size_t i) const {
+    AreaPart part = parts_[i];
+    if (const auto look = looks_.find(i); look != looks_.end())
+      part.choice.only = look->second.tiles, part.choice.window = look->second.window,
+      part.before_key = look->second.before;
+    return part;
+  }
+
+  /// The same area of the earlier build, where it was made from the same, or nothing that changed concerns it, and is whole.
   bool take_over(std::size_t i) {
     if (options_.earlier.empty() || options_.settings.empty()) return false;
     const std::string from = options_.earlier + "/" + area_path(parts_[i].choice.id);
     const Json run = json_of(from + "/run.json");
-    if (!run.is_object() || text_in(run, "made_from") != keys_[i]) return false;
+    if (!run.is_object() || (text_in(run, "made_from") != keys_[i] && !unconcerned_.contains(i))) return false;
     std::vector<std::string> paths = {"build.json", "run.json"};
     try {
       if (!is_whole(i, from, paths)) {
@@ -328,7 +473,18 @@ class AreaBuild {
         [&](std::size_t t, base::Progress& child) {
           base::keep_memory_low();
           of_area.output = place_of(parts_[todo[t]].choice.id);
-          return base::packed(outcome_of(build_area(of_area, parts_[todo[t]], child)));
+          const AreaPart part = part_of(todo[t]);
+          std::string why_whole = why_whole_[todo[t]];
+          if (part.choice.only) try {
+              AreaOutcome outcome = outcome_of(build_area(of_area, part, child));
+              outcome.in_part = true;
+              return base::packed(outcome);
+            } catch (const WindowTooSmall& reason) {
+              why_whole = reason.what();
+            }
+          AreaOutcome outcome = outcome_of(build_area(of_area, parts_[todo[t]], child));
+          outcome.why_whole = std::move(why_whole);
+          return base::packed(outcome);
         },
         [&](std::size_t t, base::ChildResult result) {
           note(result);
@@ -349,6 +505,7 @@ class AreaBuild {
     const std::string area = text_of(parts_[i].choice.id);
     for (const std::string& entry : outcome.kept_work) summary_.kept_work_of_areas.insert(area + " " + entry);
     summary_.below_quality = summary_.below_quality || outcome.below_quality;
+    if (outcome.in_part) summary_.areas_in_part.insert(area);
     summary_.unaccounted.insert(summary_.unaccounted.end(), outcome.unaccounted.begin(), outcome.unaccounted.end());
     if (options_.plan) return;
     const std::string place = place_of(parts_[i].choice.id);
@@ -359,6 +516,11 @@ class AreaBuild {
     }
     Json run = json_of(place + "/run.json");
     run["made_from"] = keys_[i];
+    run["facts"] = facts_keys_[i];
+    if (outcome.in_part)
+      run["looked_into"] = looks_.at(i).tiles.size();
+    else
+      run["looked_into_all_because"] = outcome.why_whole;
     run["below_quality"] = outcome.below_quality;
     run["open_walls"] = Json::array();
     for (const outputs::PartySide& side : outcome.open_walls)
@@ -429,7 +591,16 @@ class AreaBuild {
   std::unique_ptr<WorkCache> cache_;
   RegionSurvey survey_;
   std::vector<AreaPart> parts_;
-  std::vector<std::string> keys_;  ///< parallel to parts_
+  std::vector<std::string> keys_, facts_keys_;  ///< parallel to parts_
+  /// An area of which only some tiles are looked into.
+  struct Look {
+    std::set<TileId> tiles;
+    std::array<double, 4> window{};
+    std::string before;  ///< key of the records
+  };
+  std::map<std::size_t, Look> looks_;  ///< by index of the part
+  std::map<std::size_t, std::string> why_whole_;
+  std::set<std::size_t> unconcerned_;  ///< parts in which nothing differs
   std::size_t at_once_ = 1, kept_ = 0;
   int jobs_ = 1;
   std::uint64_t peak_ = 0, own_peak_ = 0;
@@ -485,7 +656,7 @@ BuildSummary build_one_area(const BuildOptions& options, base::Progress& progres
       choose_area(parse_tile(options.area, "--area", kLowestArea), read_region_facts(options.pinned, options));
   of_area.area.clear(), of_area.pinned.clear();
   base::StagedFolder place(options.output + ".store", false, {.name = "store", .marker = "index"});
-  divide(options, choice.id.level, place.staging_path(), progress);
+  divide(options, place.staging_path(), progress);
   const ExtractStore store(place.staging_path() + "/store");
   std::ifstream file(options.pinned, std::ios::binary);
   const Json pinned = Json::parse(file, nullptr, false);

@@ -9,10 +9,12 @@
 // Nothing of it grows with the region but one line per area.
 #pragma once
 
+#include <stdexcept>
 #include <string>
 
 #include "importers/osm/extract_store.h"
 #include "pipeline/base/progress.h"
+#include "pipeline/run/area_record.h"
 #include "pipeline/run/build.h"
 #include "pipeline/run/tile_choice.h"
 
@@ -22,6 +24,14 @@ namespace blockrand::run {
 struct AreaPart {
   const importers::osm::ExtractStore& store;
   TileChoice choice;
+  std::string record_key = {};  ///< under which the records of its tiles are kept; empty: they are not
+  std::string before_key = {};  ///< with TileChoice::only: under which those of the other tiles lie
+};
+
+/// What lies around the tiles that are looked into does not suffice, or work on the others is not kept any more: the area is to be
+/// looked into as a whole.
+struct WindowTooSmall : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 /// \throws base::UsageError  --areas or --area with what they cannot be used with

@@ -54,18 +54,26 @@ void add_rings(const Extract& e, model::Range rings, Digest& digest) {
   }
 }
 
+void add_building(const Extract& e, const model::MappedBuilding& b, Digest& digest) {
+  digest.add(b.id), digest.add(static_cast<int>(b.kind)), digest.add(static_cast<int>(b.state));
+  digest.add(model::info(b.code).text), digest.add(b.related), digest.add(b.geometry_from), digest.add(b.edited);
+  add_rings(e, b.rings, digest), add_tags(e, b.tags, digest);
+  digest.add(static_cast<int>(b.place.has_value()));
+  if (b.place) digest.add(b.place->lon), digest.add(b.place->lat);
+}
+
 }  // namespace
+
+std::string data_sha256(const Extract& e, std::span<const std::uint32_t> buildings) {
+  Digest digest;
+  for (const std::uint32_t b : buildings) add_building(e, e.buildings[b], digest);
+  return digest.finish();
+}
 
 std::string data_sha256(const Extract& e) {
   Digest digest;
   digest.add(e.buildings.size());
-  for (const model::MappedBuilding& b : e.buildings) {
-    digest.add(b.id), digest.add(static_cast<int>(b.kind)), digest.add(static_cast<int>(b.state));
-    digest.add(model::info(b.code).text), digest.add(b.related), digest.add(b.geometry_from), digest.add(b.edited);
-    add_rings(e, b.rings, digest), add_tags(e, b.tags, digest);
-    digest.add(static_cast<int>(b.place.has_value()));
-    if (b.place) digest.add(b.place->lon), digest.add(b.place->lat);
-  }
+  for (const model::MappedBuilding& b : e.buildings) add_building(e, b, digest);
   digest.add(e.building_relations.size());
   for (const model::BuildingRelation& r : e.building_relations) {
     digest.add(r.id), digest.add(r.outline), digest.add(r.parts.size());

@@ -48,31 +48,32 @@ Json repair_json(const footprints::RepairTotals& m) {
 
 Json counts_json(const BuildRecord& r) {
   const BuildSummary& s = r.summary;
-  return {{"buildings_in", s.buildings_in},
-          {"parts_in", s.parts_in},
-          {"models", s.models},
-          // Represented by its parts or by the object it duplicates.
-          {"represented", s.represented + s.duplicates},
-          {"reported", s.reported},
-          {"represented_as_duplicates", s.duplicates},
-          {"models_lod0", s.models_by_lod[0]},
-          {"models_lod1", s.models_by_lod[1]},
-          {"models_lod2", s.models_by_lod[2]},
-          {"models_lod3", s.models_by_lod[3]},
-          // What every format holds, to the last one.
-          {"buildings", r.statistics.buildings},
-          {"bodies", r.statistics.bodies},
-          {"solids_lod1", r.statistics.solids_lod1},
-          {"solids_lod2", r.statistics.solids_lod2},
-          {"solids_lod3", r.statistics.solids_lod3},
-          {"windows", r.statistics.windows},
-          {"doors", r.statistics.doors},
-          {"placements", r.statistics.placements},
-          {"installations", r.statistics.installations},
-          {"old_style_multipolygons", r.counts.old_style_multipolygons},
-          {"areas_with_holes", r.counts.areas_with_holes},
-          {"missing_nodes", r.counts.missing_nodes},
-          {"missing_ways", r.counts.missing_ways}};
+  Json counts = {{"buildings_in", s.buildings_in},
+                 {"parts_in", s.parts_in},
+                 {"models", s.models},
+                 // Represented by its parts or by the object it duplicates.
+                 {"represented", s.represented + s.duplicates},
+                 {"reported", s.reported},
+                 {"represented_as_duplicates", s.duplicates},
+                 {"models_lod0", s.models_by_lod[0]},
+                 {"models_lod1", s.models_by_lod[1]},
+                 {"models_lod2", s.models_by_lod[2]},
+                 {"models_lod3", s.models_by_lod[3]},
+                 // What every format holds, to the last one.
+                 {"buildings", r.statistics.buildings},
+                 {"bodies", r.statistics.bodies},
+                 {"solids_lod1", r.statistics.solids_lod1},
+                 {"solids_lod2", r.statistics.solids_lod2},
+                 {"solids_lod3", r.statistics.solids_lod3},
+                 {"windows", r.statistics.windows},
+                 {"doors", r.statistics.doors},
+                 {"placements", r.statistics.placements},
+                 {"installations", r.statistics.installations},
+                 {"old_style_multipolygons", r.counts.old_style_multipolygons},
+                 {"areas_with_holes", r.counts.areas_with_holes}};
+  if (!r.area)  // what is missing has no place
+    counts["missing_nodes"] = r.counts.missing_nodes, counts["missing_ways"] = r.counts.missing_ways;
+  return counts;
 }
 
 Json statistics_json(const outputs::Statistics& t) {

@@ -107,7 +107,8 @@ std::vector<std::size_t> shards_to_build(std::span<const footprints::Shard> shar
                                          const std::optional<TileChoice>& tile) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < shards.size(); ++i)
-    if (!tile || georef::contains(tile->id, shards[i].tile)) out.push_back(i);
+    if (!tile || (georef::contains(tile->id, shards[i].tile) && (!tile->only || tile->only->contains(shards[i].tile))))
+      out.push_back(i);
   return out;
 }
 

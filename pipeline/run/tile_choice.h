@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,8 +27,9 @@ inline constexpr double kHalo = 3000;
 /// A tile that is built alone, or an area of many tiles.
 struct TileChoice {
   model::TileId id;
-  int tile_level = 0;      ///< of the tiles that are made: that of `id` for one tile
-  bool placeless = false;  ///< of an area: objects without any known position are told here
+  int tile_level = 0;                           ///< of the tiles that are made: that of `id` for one tile
+  bool placeless = false;                       ///< of an area: objects without any known position are told here
+  std::optional<std::set<model::TileId>> only;  ///< of an area: the tiles that are looked into; empty: all
   bool is_area() const { return tile_level > id.level; }
   RegionFacts facts;                            ///< of the whole extract
   std::optional<outputs::ReadImagery> imagery;  ///< what the build of the whole saw in its images

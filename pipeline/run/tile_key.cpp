@@ -161,7 +161,7 @@ bool positions_as_measured(const model::Region& region, std::uint32_t first, con
   return true;
 }
 
-TileKey TileKeys::key(std::size_t shard) const {
+TileKey TileKeys::key(std::size_t shard, std::size_t place) const {
   const Impl& in = *impl_;
   const TileInputs& tiles = in.in;
   const std::vector<footprints::Seed>& seeds = tiles.shards[shard].seeds;
@@ -169,7 +169,7 @@ TileKey TileKeys::key(std::size_t shard) const {
   std::array<Packer, kTilePartCount> parts;
   const auto part = [&](TilePart p) -> Packer& { return parts[static_cast<std::size_t>(p)]; };
   part(TilePart::settings) << in.shared << tiles.shards[shard].tile;
-  for (const auto& output : in.outputs) part(TilePart::settings) << output->reads_of_tile(shard);
+  for (const auto& output : in.outputs) part(TilePart::settings) << output->reads_of_tile(place);
 
   geometry::PlanBox box;
   std::set<std::uint32_t> beside;  // of other tiles, that may share a wall

@@ -52,7 +52,8 @@ class TileKeys {
            std::span<const model::ReportRow> earlier, std::span<const std::unique_ptr<outputs::Output>> outputs);
   ~TileKeys();
 
-  TileKey key(std::size_t shard) const;
+  /// \param place  index of the tile among the shards that outputs know
+  TileKey key(std::size_t shard, std::size_t place) const;
 
  private:
   struct Impl;

@@ -33,6 +33,12 @@ struct KeptTile {
   std::uint64_t microseconds = 0;
 };
 
+std::optional<std::uint32_t> index_in(const model::Extract& extract, model::OsmId id) {
+  const auto object = std::ranges::lower_bound(extract.buildings, id, {}, &model::MappedBuilding::id);
+  if (object == extract.buildings.end() || !(object->id == id)) return std::nullopt;
+  return static_cast<std::uint32_t>(object - extract.buildings.begin());
+}
+
 }  // namespace
 
 OpenOutputs::OpenOutputs(const outputs::OutputContext& context) {
@@ -69,7 +75,8 @@ void write_outputs(const outputs::FinishedTile& tile, const OpenOutputs& open, T
 
 }  // namespace
 
-TileResult work_on_tile(std::size_t shard, const TileInputs& inputs, const OpenOutputs& open, const Account& account) {
+TileResult work_on_tile(std::size_t shard, std::size_t place, const TileInputs& inputs, const OpenOutputs& open,
+                        const Account& account, const model::Extract& told) {
   const auto start = std::chrono::steady_clock::now();
   TileResult result;
   model::Region region = run_tile(shard, inputs);
@@ -78,12 +85,14 @@ TileResult work_on_tile(std::size_t shard, const TileInputs& inputs, const OpenO
   result.statistics = outputs::count_statistics(region);
   const outputs::FinishedTile tile{
       .region = region,
-      .shard = shard,
+      .shard = place,
       .name = outputs::tile_name(region.tile),
       .has_parts = std::ranges::any_of(region.buildings, [](const model::Building& b) { return !b.parts.empty(); }),
-      .final_state = account.final_states(result.outcomes.list),
+      .final_state = account.final_states(result.outcomes.list, inputs.extract),
       .files = {}};
   write_outputs(tile, open, result);
+  if (&told != &inputs.extract)
+    for (Outcome& o : result.outcomes.list) o.index = index_in(told, inputs.extract.buildings[o.index].id).value();
   result.rows = std::move(region.report.rows);
   if (open.takes_regions || open.keeps_whole) result.region = std::move(region);
   result.microseconds = static_cast<std::uint64_t>(
@@ -117,11 +126,9 @@ std::optional<TileResult> kept_tile(const std::string& key, const OpenOutputs& o
     KeptTile kept = base::unpacked<KeptTile>(found->bytes);
     if (kept.products.size() != open.list.size()) return std::nullopt;
     for (const KeptOutcome& o : kept.outcomes) {
-      const auto object = std::lower_bound(extract.buildings.begin(), extract.buildings.end(), o.object,
-                                           [](const auto& b, model::OsmId wanted) { return b.id < wanted; });
-      if (object == extract.buildings.end() || !(object->id == o.object)) return std::nullopt;
-      result.outcomes.list.push_back(
-          {static_cast<std::uint32_t>(object - extract.buildings.begin()), o.state, o.code, o.related, o.lod});
+      const std::optional<std::uint32_t> index = index_in(extract, o.object);
+      if (!index) return std::nullopt;
+      result.outcomes.list.push_back({*index, o.state, o.code, o.related, o.lod});
     }
     result.outcomes.below_quality = kept.below_quality;
     result.rows = std::move(kept.rows);

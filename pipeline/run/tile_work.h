@@ -32,14 +32,18 @@ struct TileResult {
   std::vector<std::any> products;  ///< parallel to OpenOutputs::list
   std::vector<base::PublishedFile> files;
   model::Region region;               ///< kept only for files of the whole build
+  std::string key;                    ///< under which it is kept; empty: it is not
   bool kept = false;                  ///< it is from an earlier run
   bool may_be_kept = true;            ///< it is what its key says
   std::uint64_t microseconds = 0;     ///< of one thread, that the work took when it was done
   std::vector<std::string_view> why;  ///< it is not (BuildSummary::tiles_built_for)
 };
 
-/// All stages and all outputs of a tile. Safe for different tiles at the same time.
-TileResult work_on_tile(std::size_t shard, const TileInputs& inputs, const OpenOutputs& open, const Account& account);
+/// All stages and all outputs of a tile. Safe for different tiles at the same time. Its outcomes are those of objects of `told`.
+/// \param place  index of the tile among the shards that outputs know
+/// \param told   that of the account; for an area not that of the inputs
+TileResult work_on_tile(std::size_t shard, std::size_t place, const TileInputs& inputs, const OpenOutputs& open,
+                        const Account& account, const model::Extract& told);
 
 /// Keeps a tile's work for the next run. Safe for different tiles at the same time. \param folder  where its files lie
 void keep_tile(const std::string& key, const TileResult& result, const OpenOutputs& open, const model::Extract& extract,

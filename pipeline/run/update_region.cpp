@@ -20,6 +20,7 @@
 #include "pipeline/base/text.h"
 #include "pipeline/georef/crs.h"
 #include "pipeline/outputs/area_folders.h"
+#include "pipeline/run/area_record.h"
 #include "pipeline/run/build_inputs.h"
 #include "pipeline/run/changes_map.h"
 #include "pipeline/run/region_folder.h"
@@ -439,11 +440,16 @@ class Updater {
     summary_.areas = built.areas, summary_.areas_kept = built.areas_kept;
     std::set<std::string> kept_work = built.kept_work;
     kept_work.insert(built.kept_work_of_areas.begin(), built.kept_work_of_areas.end());
-    if (current)  // what areas used that were taken over stays of use
-      for (const std::string& entry : work_of(region_.cache(), RegionFolder::digits(*current)))
-        if (const std::size_t space = entry.find(' ');
-            space != std::string::npos && built.areas_taken_over.contains(entry.substr(0, space)))
+    if (current)  // what areas used that were taken over stays of use, and of those in part what comes before their tiles
+      for (const std::string& entry : work_of(region_.cache(), RegionFolder::digits(*current))) {
+        const std::size_t space = entry.find(' ');
+        if (space == std::string::npos) continue;
+        const std::string area = entry.substr(0, space),
+                          kind = entry.substr(space + 1, entry.find('/', space) - space - 1);
+        if (built.areas_taken_over.contains(area) ||
+            (built.areas_in_part.contains(area) && kind != "tiles" && kind != kRecords && kind != kReaches))
           kept_work.insert(entry);
+      }
     std::optional<WorkCache> cache;
     try {
       cache.emplace(region_.cache(), program_identity(), progress_);

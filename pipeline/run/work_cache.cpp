@@ -279,6 +279,11 @@ std::optional<WorkCache::Found> WorkCache::find(std::string_view kind, const std
   return found;
 }
 
+bool WorkCache::has(std::string_view kind, const std::string& key) const {
+  std::error_code error;
+  return fs::exists(place(kind, key), error);
+}
+
 void WorkCache::keep(std::string_view kind, const std::string& key, std::string_view bytes,
                      std::span<const base::PublishedFile> files, const std::string& folder) {
   if (mode_ == Mode::look) return;
@@ -324,6 +329,10 @@ std::optional<std::vector<std::uint64_t>> WorkCache::parts_before(const std::str
 void WorkCache::note_parts(const std::string& piece, std::span<const std::uint64_t> parts) {
   const std::lock_guard lock(mutex_);
   parts_[piece].assign(parts.begin(), parts.end());
+}
+
+void WorkCache::keep_note(const std::string& piece) {
+  if (const std::optional<std::vector<std::uint64_t>> parts = parts_before(piece)) note_parts(piece, *parts);
 }
 
 std::set<std::string> WorkCache::used() const {

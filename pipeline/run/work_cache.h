@@ -59,6 +59,9 @@ class WorkCache {
   /// changed since: their time differs.
   std::optional<Found> find(std::string_view kind, const std::string& key);
 
+  /// Whether there is one; it is not read.
+  bool has(std::string_view kind, const std::string& key) const;
+
   /// Keeps an entry. Where that fails (the disk is full), the run goes on without, and is told so at its end.
   /// \param files   below `folder`; they must change no more
   void keep(std::string_view kind, const std::string& key, std::string_view bytes,
@@ -72,6 +75,8 @@ class WorkCache {
   std::optional<std::vector<std::uint64_t>> parts_before(const std::string& piece) const;
   /// Notes it. Written at the end.
   void note_parts(const std::string& piece, std::span<const std::uint64_t> parts);
+  /// Notes again what was noted before: the piece was not looked into.
+  void keep_note(const std::string& piece);
 
   std::uint64_t damaged() const { return damaged_; }  ///< entries that were removed because of it
   /// Why an entry could not be kept; empty: all were.

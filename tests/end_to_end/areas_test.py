@@ -354,6 +354,51 @@ class RegionInAreas(RegionTest):
             first, second = (without_runs(hashes(f)) for f in (self.current(folder), clean))
             self.assertEqual(sorted(p for p in first.keys() | second.keys() if first.get(p) != second.get(p)), [])
 
+    def test_only_what_a_change_concerns_is_looked_into(self):
+        """Two towns 8 km apart in one area: an edit in one is worked in without a look at the other."""
+        objects, far = town(200), 10 ** 9
+        for o in list(objects):
+            if isinstance(o, Node):
+                objects.append(Node(o.id + far, o.lon + 0.12, o.lat, o.tags))
+            elif isinstance(o, Way):
+                objects.append(Way(o.id + far, [r + far for r in o.refs], o.tags))
+        map_, level = Map(objects), '9'
+        folder = self.region('wide', self.SETTINGS.replace(LEVEL, level))
+        self.update(folder, map_.write(self.path('wide.osm')))
+        area = os.path.join('areas', areas(self.current(folder))[0])
+        houses = [next(w for w in map_.ways('building') if (w.id < far) == near) for near in (True, False)]
+
+        def night(looked_into_all_because=None):
+            self.update(folder, map_.write_changes(self.path('wide.osc')))
+            run = read_json(os.path.join(self.current(folder), area), 'run.json')
+            clean = self.clean(map_, folder, '--lod', '2', '--areas', level)
+            first, second = (without_runs(hashes(f)) for f in (self.current(folder), clean))
+            self.assertEqual(sorted(p for p in first.keys() | second.keys() if first.get(p) != second.get(p)), [])
+            tiles = run['tiles']['built'] + run['tiles']['kept']
+            if looked_into_all_because:
+                self.assertNotIn('looked_into', run)
+                self.assertIn(looked_into_all_because, run['looked_into_all_because'])
+            else:
+                self.assertLess(run['looked_into'], tiles / 2 + 1)
+            self.assertGreater(run['tiles']['built'], 0)
+
+        for storeys in ('7', '3'):
+            for house in houses:
+                map_.edit(house, tags=dict(house.tags, **{'building:levels': storeys}))
+                night()
+        # Kept work that is gone, or another thing: told, and all is looked into.
+        kept = glob.glob(os.path.join(folder, 'cache', 'areas', '*', '*'))
+        self.assertTrue(kept)
+        for entry in kept:
+            shutil.rmtree(entry)
+        map_.edit(houses[0], tags=dict(houses[0].tags, **{'building:levels': '4'}))
+        night('records')
+        shutil.rmtree(os.path.join(folder, 'cache', 'stores'))
+        map_.edit(houses[0], tags=dict(houses[0].tags, **{'building:levels': '5'}))
+        night('data of the earlier build')
+        map_.edit(houses[1], tags=dict(houses[1].tags, **{'building:levels': '5'}))
+        night()
+
     def test_far_areas_stay_as_they_are(self):
         """Two towns 40 km apart: an edit in one touches nothing of the other."""
         objects = town(400)

@@ -150,7 +150,12 @@ ReportFacts report_facts(const OutputContext& context, const FinishedBuild& buil
 }
 
 PlanWords plan_words(const OutputContext& context, std::uint64_t buildings) {
-  return {context.name, about_words(buildings, context.data_time, context.crs), attribution(context), generator()};
+  // Of an area neither count nor date: it would be drawn anew with every edit of it.
+  const std::string about =
+      context.alone
+          ? context.crs.name + (context.crs.authority_code.empty() ? "" : " (" + context.crs.authority_code + ")")
+          : about_words(buildings, context.data_time, context.crs);
+  return {context.name, about, attribution(context), generator()};
 }
 constexpr const char* kTable = "buildings.csv";
 

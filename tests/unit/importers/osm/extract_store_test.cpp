@@ -41,10 +41,10 @@ TEST(ExtractStore, AreasOfRealExtractsReadAsTheWholeSays) {
     SCOPED_TRACE(entry.path().filename());
     const TempFolder folder;
     std::string extract = entry.path().string();
-    if (!write_store(extract, folder.path("store"), 12, kHalo)) {
+    if (!write_store(extract, folder.path("store"))) {
       extract = folder.path("sorted.osm.pbf");
       apply_changes(entry.path().string(), {}, extract);
-      ASSERT_TRUE(write_store(extract, folder.path("store"), 12, kHalo));
+      ASSERT_TRUE(write_store(extract, folder.path("store")));
     }
     EXPECT_FALSE(fs::exists(folder.path("store.nodes")));
     const ExtractStore store(folder.path("store"));
@@ -56,11 +56,11 @@ TEST(ExtractStore, AreasOfRealExtractsReadAsTheWholeSays) {
     EXPECT_EQ(store.figures().missing_ways, whole.counts.missing_ways);
     EXPECT_EQ(store.figures().data_time, whole.data_time);
     std::size_t owned = 0, placeless = 0, n = 0;
-    for (const StoredArea& area : store.areas()) {
+    for (const StoredArea& area : store.areas(12)) {
       const bool first = n++ == 0;
-      const model::Extract read = store.read(area.tile, window_of(area.tile), false);
+      const model::Extract read = store.read(window_of(area.tile), false);
       if (n % 7 == 1) {  // reading the whole for each would take minutes
-        EXPECT_EQ(dump_objects(store.read(area.tile, window_of(area.tile), false)),
+        EXPECT_EQ(dump_objects(store.read(window_of(area.tile), false)),
                   dump_objects(read_extract(extract, window_of(area.tile))));
         ++compared;
       }
@@ -69,7 +69,7 @@ TEST(ExtractStore, AreasOfRealExtractsReadAsTheWholeSays) {
       };
       owned += static_cast<std::size_t>(std::ranges::count_if(read.buildings, here));
       if (first && store.has_placeless()) {
-        const model::Extract with = store.read(area.tile, window_of(area.tile), true);
+        const model::Extract with = store.read(window_of(area.tile), true);
         placeless = with.buildings.size() - read.buildings.size();
       }
     }
@@ -88,7 +88,7 @@ TEST(ExtractStore, AnUnsortedFileIsRefused) {
   const TempFolder folder;
   OsmText text;
   text.node(2, 11, 51).node(1, 11, 51);
-  EXPECT_FALSE(write_store(folder.write("a.osm", text.xml()), folder.path("store"), 12, kHalo));
+  EXPECT_FALSE(write_store(folder.write("a.osm", text.xml()), folder.path("store")));
 }
 
 TEST(ExtractStore, WhatIsFarAwayIsNotRead) {
@@ -96,13 +96,17 @@ TEST(ExtractStore, WhatIsFarAwayIsNotRead) {
   OsmText text;
   text.corners(1, 0, 0, 1).corners(11, 10000, 0, 1);
   text.way(1, {1, 2, 3, 4, 1}, {{"building", "yes"}}).way(2, {11, 12, 13, 14, 11}, {{"building", "yes"}});
-  ASSERT_TRUE(write_store(folder.write("a.osm", text.xml()), folder.path("store"), 12, kHalo));
+  ASSERT_TRUE(write_store(folder.write("a.osm", text.xml()), folder.path("store")));
   const ExtractStore store(folder.path("store"));
-  ASSERT_GE(store.areas().size(), 2u);
-  for (const StoredArea& a : store.areas()) {
-    const model::Extract read = store.read(a.tile, window_of(a.tile), false);
-    EXPECT_EQ(read.buildings.size(), 1u);
+  ASSERT_GE(store.areas(12).size(), 2u);
+  std::set<model::OsmId> found;
+  for (const StoredArea& a : store.areas(12)) {
+    const model::Extract read = store.read(window_of(a.tile), false);
+    EXPECT_LE(read.buildings.size(), 1u);
+    for (const model::MappedBuilding& b : read.buildings) found.insert(b.id);
+    EXPECT_LT(store.part(*window_of(a.tile).bbox).bytes, store.figures().bytes);
   }
+  EXPECT_EQ(found.size(), 2u);
 }
 
 TEST(ExtractStore, WhatLeadsAroundTheGlobeIsInFewAreas) {
@@ -112,9 +116,9 @@ TEST(ExtractStore, WhatLeadsAroundTheGlobeIsInFewAreas) {
   text.square(1, 11, 0, 0, 1, {{"building", "yes"}});
   text.way(2, {1, 2, 3, 1}, {{"natural", "water"}}).way(3, {1, 2}, {{"highway", "primary"}});
   text.way(4, {2, 3, 1}).relation(5, {"w3 outer", "w4 outer"}, {{"type", "multipolygon"}, {"landuse", "forest"}});
-  ASSERT_TRUE(write_store(folder.write("a.osm", text.xml()), folder.path("store"), 11, kHalo));
+  ASSERT_TRUE(write_store(folder.write("a.osm", text.xml()), folder.path("store")));
   const ExtractStore store(folder.path("store"));
-  EXPECT_LT(store.areas().size(), 100'000u);  // of 8 million
+  EXPECT_LT(store.areas(11).size(), 100'000u);  // of 8 million
 }
 
 TEST(ExtractStore, ADamagedOneIsTold) {
@@ -122,15 +126,15 @@ TEST(ExtractStore, ADamagedOneIsTold) {
   OsmText text;
   text.square(1, 1, 0, 0, 1, {{"building", "yes"}});
   const std::string extract = folder.write("a.osm", text.xml());
-  ASSERT_TRUE(write_store(extract, folder.path("store"), 12, kHalo));
-  const model::TileId tile = ExtractStore(folder.path("store")).areas().front().tile;
+  ASSERT_TRUE(write_store(extract, folder.path("store")));
+  const model::TileId tile = ExtractStore(folder.path("store")).areas(12).front().tile;
   {
     std::fstream objects(folder.path("store") + "/objects", std::ios::binary | std::ios::in | std::ios::out);
     objects.seekp(20);
     objects.put('!');
   }
   const ExtractStore store(folder.path("store"));
-  EXPECT_THROW(store.read(tile, window_of(tile), false), base::InputError);
+  EXPECT_THROW(store.read(window_of(tile), false), base::InputError);
   fs::resize_file(folder.path("store") + "/index", 100);
   EXPECT_THROW(ExtractStore(folder.path("store")), base::InputError);
   EXPECT_THROW(ExtractStore(folder.path("none")), base::InputError);
@@ -142,10 +146,10 @@ TEST(ExtractStore, AreasHashWhatTheyHold) {
     OsmText text;
     text.corners(1, 0, 0, 1).corners(11, 10000, 0, 1);
     text.way(1, {1, 2, 3, 4, 1}, {{"building", "yes"}}).way(2, {11, 12, 13, 14, 11}, {{"building", use}});
-    EXPECT_TRUE(write_store(folder.write("a.osm", text.xml()), folder.path("store"), 12, kHalo));
+    EXPECT_TRUE(write_store(folder.write("a.osm", text.xml()), folder.path("store")));
     std::vector<std::string> out;
     const ExtractStore store(folder.path("store"));
-    for (const StoredArea& a : store.areas()) out.push_back(a.sha256);
+    for (const StoredArea& a : store.areas(12)) out.push_back(a.sha256);
     return out;
   };
   const auto a = hashes("yes"), b = hashes("yes"), c = hashes("shed");
@@ -153,6 +157,52 @@ TEST(ExtractStore, AreasHashWhatTheyHold) {
   ASSERT_EQ(a.size(), c.size());
   EXPECT_EQ(a.front(), c.front());
   EXPECT_NE(a.back(), c.back());
+}
+
+TEST(ExtractStore, ChangesAreTheObjectsThatDiffer) {
+  const TempFolder folder;
+  struct Edit {
+    std::string use = "yes";
+    double x = 0;  ///< m, of the third building
+    bool street = true, park = true;
+  };
+  const auto stored = [&](const std::string& name, const Edit& edit) {
+    OsmText text;
+    text.corners(1, 0, 0, 1).corners(11, 9000, 0, 1).corners(21, 20 + edit.x, 0, 1).corners(31, 40, 0, 1);
+    text.way(1, {1, 2, 3, 4, 1}, {{"building", "yes"}}).way(2, {11, 12, 13, 14, 11}, {{"building", edit.use}});
+    text.way(3, {21, 22, 23, 24, 21}, {{"building", "yes"}});
+    text.way(4, {1, 11}, {{"highway", edit.street ? "residential" : "primary"}});
+    text.way(5, edit.park ? std::vector<std::int64_t>{31, 32, 33, 34, 31} : std::vector<std::int64_t>{31, 32, 33, 31});
+    text.relation(6, {"w5 outer"}, {{"type", "multipolygon"}, {"landuse", "forest"}});
+    EXPECT_TRUE(write_store(folder.write(name + ".osm", text.xml()), folder.path(name)));
+    return ExtractStore(folder.path(name));
+  };
+  const ExtractStore before = stored("before", {});
+  const auto changed = [&](const Edit& edit) {
+    std::map<std::string, ChangedObject> out;
+    for (const ChangedObject& c : stored("now", edit).changes_since(before)) out[c.id.text()] = c;
+    return out;
+  };
+  EXPECT_TRUE(changed({}).empty());
+  const auto retagged = changed({.use = "shed"});
+  ASSERT_EQ(retagged.size(), 1u);
+  EXPECT_TRUE(retagged.at("w2").building);
+  EXPECT_FALSE(retagged.at("w2").network);
+  // Both places of what was moved: in one cell together, else apart.
+  const auto moved = changed({.x = 10});
+  ASSERT_EQ(moved.size(), 1u);
+  EXPECT_NEAR(moved.at("w3").box[2] - moved.at("w3").box[0], 11e-4, 1e-6);
+  const std::vector<ChangedObject> far = stored("now", {.x = 3000}).changes_since(before);
+  ASSERT_EQ(far.size(), 2u);
+  EXPECT_NEAR(std::abs(far[0].box[0] - far[1].box[0]), 0.3, 1e-6);
+  const auto street = changed({.street = false});
+  ASSERT_EQ(street.size(), 1u);
+  EXPECT_TRUE(street.at("w4").network);
+  // A relation changes with its ways.
+  const auto park = changed({.park = false});
+  EXPECT_EQ(park.size(), 2u);
+  EXPECT_TRUE(park.contains("r6"));
+  EXPECT_FALSE(park.at("r6").building);
 }
 
 TEST(NodeFile, FindsEveryNodeAndNoOther) {
