@@ -80,6 +80,7 @@ void measure_all(const Extract& extract, const footprints::FootprintStore& store
     geometry::PlanBox box;
     for (const std::uint32_t b : batches[i]) {
       blocks.push_back(out.blocks[b]);
+      for (BlockBorder& border : blocks.back().borders) border.line = 0;  // numbers lines in this run
       box.include(boxes[b]);
     }
     std::vector<Footprint> footprints;

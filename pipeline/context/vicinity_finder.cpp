@@ -61,7 +61,11 @@ VicinityFinder::VicinityFinder(const model::Extract& extract, const footprints::
 }
 
 void pack(const FoundVicinity& found, base::Packer& out) {
-  out << found.footprints << found.lines << found.blocks << found.passages << found.points << found.addresses;
+  out << found.footprints << found.lines << found.passages << found.points << found.addresses;
+  for (Block block : found.blocks) {
+    for (BlockBorder& border : block.borders) border.line = 0;  // numbers lines in this run
+    out << block;
+  }
   for (const BlockFigures& figures : found.figures) {
     out << static_cast<std::uint64_t>(figures.courtyards.size());
     for (Courtyard yard : figures.courtyards) {
