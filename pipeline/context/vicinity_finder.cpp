@@ -112,11 +112,11 @@ FoundVicinity VicinityFinder::vicinity_of(const geometry::PlanBox& box) const {
 
 namespace {
 
-bool same_ring(const model::Ring& a, const model::Ring& b) { return a.points == b.points && a.nodes == b.nodes; }
+bool equal_rings(const model::Ring& a, const model::Ring& b) { return a.points == b.points && a.nodes == b.nodes; }
 
 bool same_polygon(const model::Polygon& a, const model::Polygon& b) {
-  return same_ring(a.outer, b.outer) &&
-         std::equal(a.holes.begin(), a.holes.end(), b.holes.begin(), b.holes.end(), same_ring);
+  return equal_rings(a.outer, b.outer) &&
+         std::equal(a.holes.begin(), a.holes.end(), b.holes.begin(), b.holes.end(), equal_rings);
 }
 
 bool same_arc(const model::Arc& a, const model::Arc& b) {

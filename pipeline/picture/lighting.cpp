@@ -5,7 +5,7 @@
 namespace blockrand::picture {
 namespace {
 
-Box local(const Scene& scene, Box box) {
+Box box_under_sun(const Scene& scene, Box box) {
   box.min = box.min - scene.origin();
   box.max = box.max - scene.origin();
   return box;
@@ -19,12 +19,13 @@ Lighting::Lighting(const Scene& scene, const RenderOptions& options) {
   sun_ = {a.sin * e.cos, a.cos * e.cos, e.sin};
   if (!options.lit || scene.empty()) return;
   if (options.shadows)
-    maps_.push_back(std::make_shared<DepthMap>(scene, sun_, local(scene, scene.bounds()), options.shadow_map));
+    maps_.push_back(std::make_shared<DepthMap>(scene, sun_, box_under_sun(scene, scene.bounds()), options.shadow_map));
   if (options.sky_occlusion) sky_ = std::make_shared<SkyField>(scene, options.sky_map);
 }
 
 void Lighting::refine(const Scene& scene, const Box& box, int cells) {
-  if (!maps_.empty()) maps_.insert(maps_.begin(), std::make_shared<DepthMap>(scene, sun_, local(scene, box), cells));
+  if (!maps_.empty())
+    maps_.insert(maps_.begin(), std::make_shared<DepthMap>(scene, sun_, box_under_sun(scene, box), cells));
 }
 
 }  // namespace blockrand::picture

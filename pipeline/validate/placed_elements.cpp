@@ -222,7 +222,7 @@ void check_openings(const Glb& glb, const std::string& file, std::vector<Finding
 
 namespace {
 
-std::string text(const std::array<std::uint8_t, 3>& colour) {
+std::string colour_text(const std::array<std::uint8_t, 3>& colour) {
   return fmt::format("#{:02x}{:02x}{:02x}", colour[0], colour[1], colour[2]);
 }
 
@@ -243,7 +243,7 @@ void compare_pieces(const Side& reference, const Glb& glb, const std::string& gl
   std::vector<std::set<std::string>> colours_of;
   for (const GlbElement& element : glb.elements) {
     auto& set = colours_of.emplace_back();
-    for (const GlbTriangle& t : element.triangles) set.insert(text(t.colour));
+    for (const GlbTriangle& t : element.triangles) set.insert(colour_text(t.colour));
   }
   for (const ReadBody& body : reference.contents.bodies) {
     const auto row = rows.find(body.id);
@@ -263,8 +263,8 @@ void compare_pieces(const Side& reference, const Glb& glb, const std::string& gl
             placed(*place, {i & 1 ? e.max.x : e.min.x, i & 2 ? e.max.y : e.min.y, i & 4 ? e.max.z : e.min.z}));
     }
     for (const GlbTriangle& t : glb.element_triangles[row->second]) {
-      has.insert(text(t.colour));
-      drawn.push_back({{t.corners.begin(), t.corners.end()}, of_wall(text(t.colour)), false});
+      has.insert(colour_text(t.colour));
+      drawn.push_back({{t.corners.begin(), t.corners.end()}, of_wall(colour_text(t.colour)), false});
     }
     std::vector<geometry::PlanBox> in_plan;
     for (const Drawn& d : drawn) {

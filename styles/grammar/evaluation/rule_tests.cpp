@@ -74,7 +74,7 @@ void read_clause(std::string_view text, RuleTest& test) {
   }
 }
 
-void compare(const std::string& what, double found, double expected, std::vector<std::string>& failures) {
+void compare_counts(const std::string& what, double found, double expected, std::vector<std::string>& failures) {
   if (std::abs(found - expected) <= kTolerance) return;
   failures.push_back(what + " is " + number_text(found) + ", not " + number_text(expected));
 }
@@ -96,7 +96,7 @@ void check(const std::vector<std::string>& clause, const Derivation& result, std
     for (const Leaf& leaf : result.leaves)
       if (counts(leaf))
         found += kind == "leaves" ? 1 : kind == "volume" ? geometry_volume(leaf.shape) : geometry_area(leaf.shape);
-    compare((kind == "leaves" ? "the number of leaves" : "the " + kind) + of, found, expected, failures);
+    compare_counts((kind == "leaves" ? "the number of leaves" : "the " + kind) + of, found, expected, failures);
   } else if (kind == "report") {
     const Report* report = result.report(clause[1]);
     if (report == nullptr) return failures.push_back("nothing was reported as " + clause[1]);
@@ -106,7 +106,7 @@ void check(const std::vector<std::string>& clause, const Derivation& result, std
                          : which == "min" ? report->minimum
                          : which == "max" ? report->maximum
                                           : report->mean;
-    compare("the " + which + of, found, expected, failures);
+    compare_counts("the " + which + of, found, expected, failures);
   } else if (kind == "size") {
     for (const Leaf& leaf : result.leaves) {
       if (leaf.symbol != clause[1]) continue;
