@@ -257,13 +257,15 @@ const std::string& program_identity() {
     // Libraries that it runs with, and PROJ's tables, by size and time of their files. Those that are loaded when they are needed
     // count as well: all runs must say the same.
     gdal::api(), georef::detail::proj();
+    std::set<std::string> libraries;  // sorted: which of them was loaded first differs between runs
     ::dl_iterate_phdr(
         [](dl_phdr_info* info, std::size_t, void* data) {
           if (info->dlpi_name != nullptr && *info->dlpi_name != '\0')
-            (*static_cast<const decltype(add)*>(data))(info->dlpi_name);
+            static_cast<std::set<std::string>*>(data)->insert(info->dlpi_name);
           return 0;
         },
-        const_cast<void*>(static_cast<const void*>(&add)));
+        &libraries);
+    for (const std::string& library : libraries) add(library);
     const std::array<const char*, 3> places = {std::getenv("PROJ_DATA"), std::getenv("PROJ_LIB"), "/usr/share/proj"};
     for (const char* place : places) {
       std::error_code error;

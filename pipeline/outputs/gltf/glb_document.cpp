@@ -26,8 +26,6 @@ StreamInfo info_of(Stream stream) {
   switch (stream) {
     case Stream::positions:
       return {12, true, MeshoptCoding::steps};
-    case Stream::mesh_positions:
-      return {12, true, MeshoptCoding::mesh_steps};
     case Stream::far_positions:
       return {12, true, MeshoptCoding::attributes};
     case Stream::normals:

@@ -22,7 +22,6 @@ namespace blockrand::outputs {
 /// Bytes of one kind, which share a buffer view.
 enum class Stream : std::uint8_t {
   positions,               ///< 3 floats, multiples of 1/4096
-  mesh_positions,          ///< 3 floats, multiples of 1/1024
   far_positions,           ///< 3 floats of a mesh that is too wide for that
   normals,                 ///< 3 signed bytes and an empty one
   colours,                 ///< 4 words
@@ -57,9 +56,6 @@ struct GlbAccessor {
 /// Positions count in these steps: 1/4096 m. The model's own grid of 1/1024 m costs up to 0.69 mm in plan; with 0.17 mm
 /// more a corner still lies within 1 mm of its place.
 inline constexpr double kGlbStepsPerMetre = 4096;
-/// The mesh of a tile, and places in it, count in these: 1/1024 m, as the model does. In a frame that is turned against the
-/// model's a corner lies up to 0.85 mm from where it was.
-inline constexpr double kMeshStepsPerMetre = 1024;
 /// m. Farther from the origin a float, or a compressed number of 24 bits, no longer holds a step.
 inline constexpr double kFinestReach = 2047;
 

@@ -30,8 +30,8 @@ std::array<T, 3> y_up(T east, T north, T up) {
 
 constexpr std::string_view kPiecesName = "elements";
 
-/// Of placed shapes in one file, each a draw call. Below 60 with the mesh, which has one for every 65,535 vertices.
-constexpr std::size_t kMostShapes = 50;
+/// Of placed shapes in one file, each a draw call: a bound for odd tiles. In towns what a draw is worth (element_pieces.cpp) ends it before.
+constexpr std::size_t kMostShapes = 400;
 
 /// Appends vertices and the accessors of the primitives to a document.
 class MeshWriter {
@@ -97,7 +97,7 @@ class MeshWriter {
     std::vector<Steps> steps;
     for (const MeshVertex& v : p.vertices) {
       const model::Point3& enu = mesh_.positions[v.position];
-      const auto whole = [](double x) { return static_cast<std::int64_t>(std::nearbyint(x * kMeshStepsPerMetre)); };
+      const auto whole = [](double x) { return static_cast<std::int64_t>(std::nearbyint(x * kGlbStepsPerMetre)); };
       steps.push_back({whole(enu.x), whole(enu.y), whole(enu.z)});
     }
     MeshPrimitive out;
@@ -127,7 +127,7 @@ class MeshWriter {
       const model::Point3& enu = mesh_.positions[v.position];
       const std::array<double, 3> xyz = y_up(enu.x, enu.y, enu.z);
       for (std::size_t i = 0; i < 3; ++i) {
-        const double stored = far_ ? xyz[i] : std::nearbyint(xyz[i] * kMeshStepsPerMetre) / kMeshStepsPerMetre;
+        const double stored = far_ ? xyz[i] : std::nearbyint(xyz[i] * kGlbStepsPerMetre) / kGlbStepsPerMetre;
         const float value = static_cast<float>(stored) + 0.0f;  // no -0
         const bool first = values.size() < 3;
         bounds[0][i] = first ? value : std::min<double>(bounds[0][i], value);
@@ -135,8 +135,8 @@ class MeshWriter {
         values.push_back(value);
       }
     }
-    return add<float>(far_ ? Stream::far_positions : Stream::mesh_positions, values, Component::float32, "VEC3", p,
-                      false, bounds);
+    return add<float>(far_ ? Stream::far_positions : Stream::positions, values, Component::float32, "VEC3", p, false,
+                      bounds);
   }
 
   int add_normals(const MeshPrimitive& p) {

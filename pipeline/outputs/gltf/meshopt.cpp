@@ -38,8 +38,6 @@ int exponent_of(MeshoptCoding coding) {
   switch (coding) {
     case MeshoptCoding::steps:
       return -12;
-    case MeshoptCoding::mesh_steps:
-      return -10;
     case MeshoptCoding::scales:
       return -17;
     case MeshoptCoding::whole:

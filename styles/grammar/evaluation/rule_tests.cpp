@@ -114,7 +114,7 @@ void check(const std::vector<std::string>& clause, const Derivation& result, std
       static constexpr const char* kAxes[3] = {"x", "y", "z"};
       for (std::size_t i = 0; i < 3; ++i)
         if (read_number(clause[2 + i], expected))
-          compare(std::string("the size along ") + kAxes[i] + of, found[i], expected, failures);
+          compare_counts(std::string("the size along ") + kAxes[i] + of, found[i], expected, failures);
       return;
     }
     failures.push_back("there is no leaf " + clause[1]);

@@ -83,7 +83,7 @@ TEST(Glb, PositionsCountInSteps) {
   GlbOptions o = options();
   const Glb glb = write_glb(s.region(), o);
   const nlohmann::json json = document(glb.bytes);
-  constexpr double step = 1.0 / 1024;
+  constexpr double step = 1.0 / 4096;
   EXPECT_FALSE(json["nodes"][0].contains("scale"));
   const GlbFile file = validators::read_glb_bytes(glb.bytes);
   EXPECT_TRUE(test::closed(triangles(file.features.at(0))));
