@@ -183,8 +183,8 @@ BuildEstimate estimate(const TownSize& town, const BuildOptions& options, double
   // What grows with the town and is not there when it has been read: walls' surroundings, facts, styles. Not in step with
   // it, since most of it is gone before the tiles.
   constexpr double kPerRootOfObjects = 0.55e6, kFixed = 10e6;
-  // Tiles in flight hold what becomes their facades, and the texts of it: a quarter of what it takes on the disk.
-  constexpr double kFacades = 10e6, kOfDisk = 0.25;
+  // Tiles in flight hold what becomes their facades, and the texts of it in all formats at a time: two thirds of what it takes on the disk.
+  constexpr double kFacades = 10e6, kOfDisk = 0.7;
   const double in_flight = std::min(2.0 * jobs + 2, static_cast<double>(town.tiles));
   double memory = static_cast<double>(store_bytes) + kFixed + size.memory + kPerRootOfObjects * std::sqrt(objects);
   if (options.lod >= 3) memory += kFacades + kOfDisk * per_wall.value_or(size.per_wall) * town.tile.walls * in_flight;

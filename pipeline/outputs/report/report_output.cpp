@@ -267,7 +267,7 @@ OutputFormat report_output() {
                       "the neighbourhood from above: blocks, courtyards, walls in the colours of what they face"}},
           .asked = [](const OutputOptions& o) { return o.report; },
           .size = [](const OutputOptions&,
-                     std::size_t) { return OutputSize{.once = 4e6, .per_building = 450, .memory = 170e6}; },
+                     std::size_t) { return OutputSize{.once = 4e6, .per_building = 450, .memory = 20e6}; },
           .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<ReportOutput>(c); }};
 }
 
