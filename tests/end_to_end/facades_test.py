@@ -61,7 +61,7 @@ class Facades(BuildTest):
         self.assertLess(placed['meshes'], placed['ext'] / 4, 'pieces are stored once')
         for name in files_of(out, '.glb'):
             draws, stored, shown, _ = glb_counts.count_scene(glb_json(os.path.join(out, name)))
-            self.assertLessEqual(draws, 60)
+            self.assertLessEqual(draws, 300, "the sample has a house of every kind in its middle: 2,699 before pieces were shared")
             self.assertLessEqual(stored, shown)
         self.assertGreater(text.count('<bldg:lod3Solid>'), 0.8 * counts['models'])
 
