@@ -244,7 +244,8 @@ TEST(DetailGlb, ElementsAreStoredOnceAndLeadToTheirBuilding) {
     }
   ASSERT_GT(wanted, 100u);
   EXPECT_EQ(glb.placements, wanted);
-  EXPECT_EQ(glb.elements, 6u) << "window and door each with a reveal, lamp in two colours";
+  EXPECT_EQ(glb.elements, 5u)
+      << "window and door each with a reveal, and a lamp; that of another colour is rare and is not worth a draw";
   const Scene scene(glb.bytes);
   EXPECT_GE(scene.places, wanted) << "each element in pieces";
   EXPECT_EQ(scene.triangles.size(), glb.triangles);
