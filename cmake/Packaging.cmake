@@ -34,7 +34,7 @@ install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${doc_folder})
 install(FILES pipeline/picture/fonts/LICENSE.txt DESTINATION ${doc_folder} RENAME LICENSE.DejaVu)  # the program holds the font
 install(FILES viewer/bundle/LICENSES.txt DESTINATION ${doc_folder} RENAME LICENSES.viewer)  # and the page of `view`
 if(JEMALLOC_LIBRARY AND EXISTS /usr/share/doc/libjemalloc-dev/copyright)  # the program holds the allocator
-  install(FILES /usr/share/doc/libjemalloc-dev/copyright DESTINATION ${doc_folder} RENAME LICENSE.jemalloc)
+  install(FILES /usr/share/doc/libjemalloc-dev/copyright DESTINATION ${doc_folder} RENAME LICENSES.jemalloc)
 endif()
 install(FILES samples/blockrand-viertel.osm DESTINATION ${doc_folder}/examples)
 

@@ -18,6 +18,9 @@ INSTALLED = ['bin/blockrand', 'share/bash-completion/completions/blockrand', 'sh
              'share/doc/blockrand/README.md',
              'share/doc/blockrand/examples/blockrand-viertel.osm', 'share/fish/vendor_completions.d/blockrand.fish',
              'share/man/man1/blockrand.1', 'share/zsh/site-functions/_blockrand']
+# The program holds jemalloc where that was installed when it was built.
+if os.path.exists('/usr/share/doc/libjemalloc-dev/copyright'):
+    INSTALLED.append('share/doc/blockrand/LICENSES.jemalloc')
 # Styles, district rules, grammars and profiles are many and grow: whatever the source tree holds.
 INSTALLED += ['share/blockrand/' + os.path.relpath(os.path.join(folder, name), SOURCE)
               for part in ('styles', 'districts', 'grammars', 'profiles') for folder, _, names in os.walk(os.path.join(SOURCE, 'configs', part))
