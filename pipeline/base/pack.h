@@ -192,7 +192,10 @@ class Unpacker {
     bool there = false;
     *this >> there;
     value.reset();
-    if (there) *this >> value.emplace();
+    if (!there) return;
+    T inside{};  // clang finds no emplace() for structures within a class
+    *this >> inside;
+    value = std::move(inside);
   }
   template <class A, class B>
   void get(std::pair<A, B>& value) {
