@@ -105,17 +105,6 @@ class Loop {
     shared.rethrow();
   }
 
-  std::vector<std::size_t> stretches_to_share(std::size_t count) {
-    // Some more than threads: they are of unequal weight.
-    constexpr std::size_t kOfEach = 3;
-    const std::size_t threads = sharing_threads();
-    const std::size_t number = threads > 1 ? std::min(count, kOfEach * threads) : std::min<std::size_t>(count, 1);
-    std::vector<std::size_t> begins;
-    for (std::size_t i = 0; i < number; ++i) begins.push_back(i * count / number);
-    begins.push_back(count);
-    return begins;
-  }
-
   std::size_t sharing_threads() {
     const std::unique_lock lock(mutex_);
     return waiting_ + 1;

@@ -328,9 +328,9 @@ AreaAsTold told_area(const AreaRecord& record, std::span<const model::Point2> co
   for (const auto& [id, tile] : record)
     out.repaired.totals.rows += tile.terrace_rows, out.repaired.totals.at_cuts += tile.at_cuts;
   for (const OsmId id : elsewhere) {
-    footprints::StoredFootprint stub;
-    stub.id = id;
-    store.set(at++, stub, {});
+    footprints::StoredFootprint by_name;  // a building elsewhere: nothing but its id is told
+    by_name.id = id;
+    store.set(at++, by_name, {});
   }
   return out;
 }
