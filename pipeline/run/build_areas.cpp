@@ -25,6 +25,7 @@
 #include "pipeline/georef/projection.h"
 #include "pipeline/georef/tiles.h"
 #include "pipeline/outputs/output.h"
+#include "pipeline/run/area_changes.h"
 #include "pipeline/run/area_overview.h"
 #include "pipeline/run/area_survey.h"
 #include "pipeline/run/build_inputs.h"
@@ -315,73 +316,19 @@ class AreaBuild {
     } catch (const base::UnpackError&) {
       return;
     }
-    std::set<TileId> tiles;
-    geometry::PlanBox needed;
-    const georef::GeoBox own = georef::bounds(part.choice.id);
-    for (const importers::osm::ChangedObject& change : changes) {
-      why_whole_[i] = "objects without a place";
-      if (change.placeless && part.choice.placeless) return;
-      if (change.placeless && change.box == std::array<double, 4>{}) continue;
-      // Somewhere else: no tile here reaches further than what is read for the area.
-      const auto& window = part.choice.window;
-      if (change.box[0] > window[2] || change.box[2] < window[0] || change.box[1] > window[3] ||
-          change.box[3] < window[1])
-        continue;
-      const geometry::PlanBox box = projected_box(change.box, projection);
-      const double beyond = std::max(change.network ? kNetworkReach : 0, change.kinds != 0 ? rules : 0);
-      constexpr double kBent = 1;  // m: sides of the box of an object in the projection
-      for (const auto& [tile, reach] : reaches)
-        if (reach.far.near(box, kBent) || reach.near.near(box, beyond + kBent)) tiles.insert(tile);
-      // Tiles that may tell of it for the first time.
-      const std::array<double, 4> here{std::max(change.box[0], own.west), std::max(change.box[1], own.south),
-                                       std::min(change.box[2], own.east), std::min(change.box[3], own.north)};
-      if (here[0] > here[2] || here[1] > here[3]) continue;
-      const auto at = [](double lon, double lat) {
-        return georef::tile_of(
-            {static_cast<std::int32_t>(std::lround(lon * 1e7)), static_cast<std::int32_t>(std::lround(lat * 1e7))},
-            footprints::kTileLevel);
-      };
-      const TileId low = at(here[0], here[1]), high = at(here[2], here[3]);
-      constexpr std::uint64_t kMostTiles = 64;  // as many as an area has: it is looked into as a whole
-      why_whole_[i] = change.id.text() + " spans much of it";
-      if ((high.x - low.x + std::uint64_t{1}) * (high.y - low.y + std::uint64_t{1}) > kMostTiles) return;
-      for (std::uint32_t y = low.y; y <= high.y; ++y)
-        for (std::uint32_t x = low.x; x <= high.x; ++x)
-          if (const TileId tile{footprints::kTileLevel, x, y}; georef::contains(part.choice.id, tile)) {
-            tiles.insert(tile);
-            const georef::GeoBox b = georef::bounds(tile);
-            const geometry::PlanBox ground = projected_box({b.west, b.south, b.east, b.north}, projection);
-            needed.include(needed_around({ground, ground}, rules));
-            needed.include(box);
-          }
-    }
-    if (tiles.empty()) {
+    AreaChanges concerned = concerned_tiles(part.choice, reaches, changes, rules, projection);
+    why_whole_[i] = std::move(concerned.why_whole);
+    if (concerned.tiles.empty() && why_whole_[i].empty())
       unconcerned_.insert(i);
-      return;
-    }
-    for (const TileId& tile : tiles)
-      if (const auto reach = reaches.find(tile); reach != reaches.end())
-        needed.include(needed_around(reach->second, rules));
-    // Outlines that changed may reach a little further than before.
-    constexpr double kMore = 300;  // m
-    needed.minimum = {needed.minimum.x - kMore, needed.minimum.y - kMore};
-    needed.maximum = {needed.maximum.x + kMore, needed.maximum.y + kMore};
-    const std::array<double, 4> around = window_around(needed, projection);
-    const auto& all = part.choice.window;
-    const std::array<double, 4> window{std::max(around[0], all[0]), std::max(around[1], all[1]),
-                                       std::min(around[2], all[2]), std::min(around[3], all[3])};
-    constexpr double kMostOfAll = 0.6;  // of what is read for the area: above it looking twice would cost more
-    const auto size = [](const std::array<double, 4>& w) { return (w[2] - w[0]) * (w[3] - w[1]); };
-    why_whole_[i] = "most of it is concerned";
-    if (size(window) > kMostOfAll * size(all)) return;
-    looks_[i] = {std::move(tiles), window, made_from};
+    else if (why_whole_[i].empty())
+      looks_[i] = {std::move(concerned), made_from};
   }
 
   /// The area, of which only some tiles are looked into.
   AreaPart part_of(std::size_t i) const {
     AreaPart part = parts_[i];
     if (const auto look = looks_.find(i); look != looks_.end())
-      part.choice.only = look->second.tiles, part.choice.window = look->second.window,
+      part.choice.only = look->second.changes.tiles, part.choice.window = look->second.changes.window,
       part.before_key = look->second.before;
     return part;
   }
@@ -518,7 +465,7 @@ class AreaBuild {
     run["made_from"] = keys_[i];
     run["facts"] = facts_keys_[i];
     if (outcome.in_part)
-      run["looked_into"] = looks_.at(i).tiles.size();
+      run["looked_into"] = looks_.at(i).changes.tiles.size();
     else
       run["looked_into_all_because"] = outcome.why_whole;
     run["below_quality"] = outcome.below_quality;
@@ -594,8 +541,7 @@ class AreaBuild {
   std::vector<std::string> keys_, facts_keys_;  ///< parallel to parts_
   /// An area of which only some tiles are looked into.
   struct Look {
-    std::set<TileId> tiles;
-    std::array<double, 4> window{};
+    AreaChanges changes;
     std::string before;  ///< key of the records
   };
   std::map<std::size_t, Look> looks_;  ///< by index of the part

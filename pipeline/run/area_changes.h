@@ -1,0 +1,28 @@
+// Which tiles of an area the changes of a map concern, and what must be read to work on these.
+#pragma once
+
+#include <array>
+#include <set>
+#include <span>
+#include <string>
+
+#include "importers/osm/extract_store.h"
+#include "pipeline/georef/projection.h"
+#include "pipeline/run/area_reach.h"
+#include "pipeline/run/tile_choice.h"
+
+namespace blockrand::run {
+
+struct AreaChanges {
+  std::set<model::TileId> tiles;   ///< empty, and no reason to look into all: nothing here differs
+  std::array<double, 4> window{};  ///< west, south, east, north in degrees: what must be read to look into them
+  std::string why_whole;           ///< not empty: all tiles are to be looked into, and why
+};
+
+/// \param reaches  of all tiles of the area, as they were before the changes
+/// \param rules    m, how far district rules look at most (rules_reach)
+AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
+                            std::span<const importers::osm::ChangedObject> changes, double rules,
+                            const georef::Projection& projection);
+
+}  // namespace blockrand::run
