@@ -83,7 +83,7 @@ OutlineSegments::OutlineSegments(const model::Building& building) {
     const double length = distance(q, p);
     if (length <= 0) continue;
     const auto at = [&](double s) { return Point2{p.x + (q.x - p.x) * s / length, p.y + (q.y - p.y) * s / length}; };
-    segments_.push_back({at(e.start), at(e.end), kind_of(e)});
+    segments_.push_back({at(e.start), at(e.end), kind_of(e), e.covered_height});
     // The longest front; of equal ones the one with the least corner.
     const OutlineSegment& last = segments_.back();
     const std::tuple key(std::llround((e.end - e.start) * 100), Point2{-last.a.x, -last.a.y});
@@ -111,6 +111,15 @@ RoofEdge OutlineSegments::kind(Point2 p, Point2 q) const {
   for (const RoofEdge k : {RoofEdge::street, RoofEdge::courtyard})
     if (length[static_cast<std::size_t>(k)] > length[most]) most = static_cast<std::size_t>(k);
   return static_cast<RoofEdge>(most);
+}
+
+double OutlineSegments::covered(Point2 p, Point2 q) const {
+  constexpr double kLeast = 0.3;  // m: shorter stretches stand for nothing
+  std::optional<double> least;
+  for (const OutlineSegment& s : segments_)
+    if (s.kind == RoofEdge::party_wall && common_length(s.a, s.b, p, q) > kLeast)
+      least = std::min(least.value_or(1e300), static_cast<double>(s.covered));
+  return least.value_or(0);
 }
 
 std::vector<RoofEdge> roof_edges(const model::Building& building, const Polygon& plan) {

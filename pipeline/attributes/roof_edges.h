@@ -22,11 +22,14 @@ class OutlineSegments {
   bool empty() const { return segments_.empty(); }
   /// What the wall from p to q is, by the rules of roof_edges().
   model::RoofEdge kind(model::Point2 p, model::Point2 q) const;
+  /// m above the building's ground up to which neighbours cover the party wall from p to q: the least along it.
+  double covered(model::Point2 p, model::Point2 q) const;
 
  private:
   struct OutlineSegment {
     model::Point2 a, b;
     model::RoofEdge kind = model::RoofEdge::open;
+    float covered = 0;  ///< m
   };
   std::vector<OutlineSegment> segments_;
   std::optional<model::Point2> street_;  ///< which way the longest street front looks

@@ -9,6 +9,7 @@
 #include "pipeline/attributes/resolve.h"
 #include "pipeline/context/wall_segments.h"
 #include "pipeline/facades/facades.h"
+#include "pipeline/facades/roof_edges.h"
 #include "pipeline/facades/roof_installations.h"
 #include "pipeline/footprints/load.h"
 #include "pipeline/footprints/repair/parts.h"
@@ -152,6 +153,14 @@ Region run_tile(std::size_t shard, const TileInputs& in) {
   if (in.lod >= 3 && in.grammars) {
     facades::build_facades(region, *in.grammars, in.defaults, {in.seed});
     facades::add_roof_installations(region, built, in.defaults, {in.seed});
+    facades::add_roof_edges(
+        region, built, in.defaults, [&](const geometry::PlanBox& box, double distance, model::OsmId but) {
+          std::vector<model::Polygon> outlines;
+          for (const std::uint32_t number : in.vicinity.buildings_near(box, distance))
+            if (in.repaired.footprints[number].id != but)
+              std::ranges::move(in.repaired.footprints.polygons(number), std::back_inserter(outlines));
+          return outlines;
+        });
   }
   masses::tell_part_overlaps(region);
   return region;

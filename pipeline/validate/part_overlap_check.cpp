@@ -11,6 +11,7 @@
 
 #include "pipeline/geometry/solid_defect.h"
 #include "pipeline/geometry/solid_overlap.h"
+#include "pipeline/model/roof_element.h"
 #include "pipeline/validate/solids.h"
 
 namespace blockrand::validate {
@@ -40,8 +41,17 @@ struct Shape {
 
 struct Body {
   std::string_view id;
-  std::vector<Shape> shapes;
+  bool leans = false;  ///< on sloping surfaces, along a whole edge of the roof
+  std::vector<Shape> shapes = {};
 };
+
+/// Bodies along the edges of roofs lie on slopes whose corners are rounded to the grid: both surfaces are the same to a
+/// millimetre or two, not to the last bit.
+bool leans_on_a_roof(std::string_view kind) {
+  using enum model::RoofElementKind;
+  constexpr model::RoofElementKind kLeaning[] = {eaves, verge, ridge_cap, hip_cap, parapet, firewall, gable};
+  return std::ranges::any_of(kLeaning, [kind](model::RoofElementKind k) { return model::name(k) == kind; });
+}
 
 class BoxMaker {
  public:
@@ -81,6 +91,13 @@ double common_roughly(const ReadMesh& a, const ReadMesh& b) {
   return found.overlap ? found.volume : 0;
 }
 
+/// Of what leans on a roof: 1 cm of depth is touching, beyond it a cubic centimetre counts.
+double common_deeply(const ReadMesh& a, const ReadMesh& b) {
+  constexpr geometry::OverlapOptions kTouching{.depth = 0.01, .volume = 1e-6};
+  const geometry::SolidOverlap found = geometry::overlap_of(view(a), view(b), kTouching);
+  return found.overlap ? found.volume : 0;
+}
+
 std::string volume_text(double volume) {
   return volume >= 0.01 ? fmt::format("{:.2f} m³", volume) : fmt::format("{:.2g} cm³", volume * 1e6);
 }
@@ -100,7 +117,8 @@ std::vector<PartsOverlap> compare(std::map<std::string_view, std::vector<Body>>&
             const ReadMesh *one = a.get(), *other = b.get();
             if (!one || !other) continue;
             compared = true;
-            if (const double volume = common(*one, *other); volume > 0)
+            const Common judge = bodies[i].leans || bodies[j].leans ? common_deeply : common;
+            if (const double volume = judge(*one, *other); volume > 0)
               where += fmt::format("{} {} in {}", where.empty() ? ":" : ",", volume_text(volume), a.lod);
           }
         pairs += compared;
@@ -126,10 +144,10 @@ std::vector<PartsOverlap> find_overlaps(const Contents& contents, std::uint64_t&
   };
   for (const ReadBody& body : contents.bodies) {
     std::vector<Body>& of_building = buildings[body.building];
-    Body& made = of_building.emplace_back(Body{body.id, {}});
+    Body& made = of_building.emplace_back(Body{body.id});
     for (const ReadSolid& solid : body.solids) add(made, solid);
     for (const ReadInstallation& installation : body.detail.installations)
-      add(of_building.emplace_back(Body{installation.id, {}}),
+      add(of_building.emplace_back(Body{installation.id, leans_on_a_roof(installation.kind)}),
           installations.emplace_back(ReadSolid{3, installation.polygons}));
   }
   return compare(buildings, common_exactly, pairs);
@@ -145,7 +163,7 @@ std::vector<PartsOverlap> find_overlaps(const Glb& glb, std::uint64_t& pairs) {
     const auto lod = body.attributes.find("lod");
     // A footprint laid on the ground is no solid.
     if (box.empty() || (lod != body.attributes.end() && lod->second == "0")) continue;
-    Body& made = buildings[body.building].emplace_back(Body{body.id, {}});
+    Body& made = buildings[body.building].emplace_back(Body{body.id});
     made.shapes.push_back({"the mesh", box.box(), nullptr, &glb.triangles[i]});
   }
   return compare(buildings, common_roughly, pairs);

@@ -16,7 +16,8 @@ struct PartsOverlap {
 };
 
 /// All pairs of bodies of a building, and of what stands on its roofs, whose solids of one level of detail have room in
-/// common: val3dity's 601 without a tolerance (geometry::kLeastCommonVolume). What solids that are invalid give means
+/// common: val3dity's 601 without a tolerance (geometry::kLeastCommonVolume); of eaves and what else lies along roofs what is 1 cm deep
+/// and more than a cubic centimetre. What solids that are invalid give means
 /// nothing.
 /// \param pairs  increased by the pairs whose boxes meet, which were compared
 std::vector<PartsOverlap> find_overlaps(const Contents& contents, std::uint64_t& pairs);

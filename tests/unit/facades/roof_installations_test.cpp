@@ -11,10 +11,8 @@
 
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon_measures.h"
-#include "pipeline/geometry/triangulate.h"
 #include "pipeline/masses/built_mass.h"
-#include "pipeline/masses/envelope.h"
-#include "tests/unit/geometry/shapes.h"
+#include "tests/unit/facades/house.h"
 
 namespace blockrand::facades {
 namespace {
@@ -22,68 +20,11 @@ namespace {
 using model::Point2;
 using model::RoofEdge;
 using model::RoofShape;
+using test::defaults;
+using test::House;
+using test::Tile;
+using test::tile_of;
 using testing_shapes::polygon;
-
-const attributes::Defaults& defaults() {
-  static const attributes::Defaults d = attributes::read_defaults(std::string(BLOCKRAND_SOURCE_DIR) + "/configs");
-  return d;
-}
-
-struct House {
-  model::Polygon plan = polygon({{0, 0}, {18, 0}, {18, 12}, {0, 12}});
-  std::vector<RoofEdge> edges{RoofEdge::street, RoofEdge::party_wall, RoofEdge::courtyard, RoofEdge::party_wall};
-  RoofShape shape = RoofShape::gabled;
-  double eaves = 18, height = 5;
-  std::string use = "apartments", style = "gruenderzeit", era = "1840_1918";
-  double roof_storeys = 0;
-};
-
-roofs::Roof roof_of(const House& h) {
-  roofs::RoofRequest request;
-  request.shape = h.shape;
-  request.measures = {h.eaves, h.height};
-  request.edges = h.edges;
-  if (h.shape == RoofShape::flat) return roofs::flat_roof(h.plan, h.eaves);
-  return roofs::build_roof(h.plan, request)->roof;
-}
-
-/// Buildings that stand, and what the masses hand on of them.
-struct Tile {
-  model::Region region;
-  std::vector<masses::BuiltMasses::Entry> built;
-};
-
-Tile tile_of(const House& h, std::int64_t id = 1) {
-  Tile tile;
-  model::Building b;
-  b.osm = {model::OsmType::way, id};
-  b.situation.width = 18;
-  b.attributes.use.value = h.use;
-  b.attributes.style.value = h.style;
-  b.attributes.era.value = h.era;
-  model::BuildingPart part;
-  part.id = b.id();
-  part.osm = b.osm;
-  part.attributes = b.attributes;
-  part.attributes.roof_storeys.value = h.roof_storeys;
-  part.plan = part.roof_plan = h.plan;
-  part.roof_edges = h.edges;
-  part.built_roof = h.shape;
-  masses::EnvelopeMaterials looks;
-  looks.wall.kind = model::SurfaceKind::wall;
-  looks.roof.kind = model::SurfaceKind::roof;
-  looks.under.kind = model::SurfaceKind::ground;
-  const roofs::Roof roof = roof_of(h);
-  part.lod2 = masses::envelope(h.plan, 0, roof, looks);
-  tile.built.push_back({{0, 0}, masses::built_mass(h.plan, 0, roof)});
-  part.lod2_triangles = *geometry::triangulate(part.lod2);
-  part.lod3.solid = part.lod2;
-  part.lod3.triangles = part.lod2_triangles;
-  part.lod = 3;
-  b.parts.push_back(std::move(part));
-  tile.region.buildings.push_back(std::move(b));
-  return tile;
-}
 
 void furnish(Tile& tile) { add_roof_installations(tile.region, masses::BuiltMasses(tile.built), defaults(), {}); }
 
