@@ -224,8 +224,9 @@ class RoofDresser {
     const Looks looks = looks_of(body);
     std::vector<std::vector<Point2>> taken = stacks_on(body);
     std::vector<model::RoofInstallation> bodies;
-    const auto take = [&](roofs::BuiltElements&& built) {
+    const auto take = [&](roofs::BuiltElements&& built, RoofElementKind kind) {
       std::ranges::move(built.bodies, std::back_inserter(bodies));
+      if (built.refused > 0) left_out_[kind] += built.refused;
     };
 
     if (old && !small) {
@@ -243,7 +244,7 @@ class RoofDresser {
       if (any) {
         roofs::BuiltFirewalls walls = roofs::firewalls(plan, roof, sides, taken);
         std::ranges::move(walls.places, std::back_inserter(taken));
-        take(std::move(walls.elements));
+        take(std::move(walls.elements), RoofElementKind::firewall);
       }
     }
 
@@ -258,7 +259,7 @@ class RoofDresser {
       for (std::size_t i = 0; i < edges.size(); ++i) bare[i] = kinds[i] == model::RoofEdge::party_wall;
       roofs::ParapetOptions options;
       options.height = kParapet;
-      take(roofs::parapets(plan, roof, kinds, bare, taken, options));
+      take(roofs::parapets(plan, roof, kinds, bare, taken, options), RoofElementKind::parapet);
     }
 
     roofs::OverhangOptions over;
@@ -272,8 +273,8 @@ class RoofDresser {
       rooms[i] = {kinds[i], level[i] || has_cornice(body, edges[i], top) ? 0 : free[i]};
     }
     roofs::BuiltOverhangs beyond = roofs::overhangs(plan, roof, rooms, over);
-    take(std::move(beyond.elements));
-    if (has_caps(looks)) take(roofs::ridge_and_hip_caps(roof, beyond.corners, taken));
+    take(std::move(beyond.elements), RoofElementKind::eaves);
+    if (has_caps(looks)) take(roofs::ridge_and_hip_caps(roof, beyond.corners, taken), RoofElementKind::ridge_cap);
 
     for (model::RoofInstallation& made : bodies) {
       auto triangles = geometry::triangulate(made.solid);
