@@ -115,11 +115,7 @@ struct DistrictAssigner::Impl {
       if (!in.footprints[b].box.empty()) sets_here.insert(book.choose(place_of(b)));
     for (const auto& [cell, sums] : in.context.cells)
       cells.emplace(cell, context::figures_of(sums, context::covered_share(cell, in.context.coverage)));
-    const bool asked = std::any_of(book.sets.begin(), book.sets.end(), [](const districts::RuleSet& set) {
-      return std::any_of(set.rules.begin(), set.rules.end(),
-                         [](const districts::Rule& r) { return !r.where.cell.empty(); });
-    });
-    if (asked) {
+    if (book.ask_cells()) {
       cell_figures.resize(in.footprints.size(), nullptr);
       for (std::uint32_t b = 0; b < in.footprints.size(); ++b)
         if (!in.footprints[b].box.empty())

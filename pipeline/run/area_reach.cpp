@@ -49,7 +49,7 @@ class Reaches {
     TileReach reach;
     // Features of houses: what stands around, and what that needs of its own surroundings.
     reach.near = with_blocks(touched(touched(measured, classify::kNearReach), context::kWallSegmentReach));
-    reach.far = grown(measured, kTownReach);
+    reach.far = asks_town_ ? grown(measured, kTownReach) : measured;
     reach.far.include(reach.near);
     reach.near = with_rows(reach.near), reach.far = with_rows(reach.far);
     return reach;
@@ -98,6 +98,7 @@ class Reaches {
   }
 
   const ReachInputs& in_;
+  const bool asks_town_ = classify::any_asks(in_.tables, "town") || in_.book.ask_cells();
   const footprints::FootprintStore& store_;
   geometry::BoxIndex houses_, rows_, blocks_;  ///< blocks: empty boxes for those that are too large
 };

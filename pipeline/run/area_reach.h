@@ -15,7 +15,7 @@ namespace blockrand::run {
 /// Boxes in metres of the build CRS.
 struct TileReach {
   geometry::PlanBox near;  ///< what is measured, classified and built there counts: its blocks, its rows, its features
-  geometry::PlanBox far;   ///< and outlines of what stands in the district cells around
+  geometry::PlanBox far;   ///< and, where something asks for them, outlines of what stands in the district cells around
 };
 
 using AreaReach = std::map<model::TileId, TileReach>;
@@ -27,6 +27,7 @@ struct ReachInputs {
   const LocatedExtract& located;
   const PreparedExtract& prepared;
   const classify::Tables& tables;
+  const districts::RuleSets& book;
   const TileChoice& area;
 };
 

@@ -307,8 +307,7 @@ AreaRecord records_before(const AreaPart& part, WorkCache* cache) {
 }
 
 /// Of the tiles that are looked into. \throws WindowTooSmall  more must be read for them
-void note_reaches(const TileChoice& area, const ReachInputs& inputs, const districts::RuleSets& book,
-                  AreaRecord& records) {
+void note_reaches(const TileChoice& area, const ReachInputs& inputs, AreaRecord& records) {
   std::vector<model::TileId> tiles;
   for (const auto& [tile, told] : records)
     if (!area.only || area.only->contains(tile)) tiles.push_back(tile);
@@ -320,7 +319,7 @@ void note_reaches(const TileChoice& area, const ReachInputs& inputs, const distr
       within_window({halo.west, halo.south, halo.east, halo.north}, inputs.located.projection);
   for (const auto& [tile, reach] : reaches_of(inputs, tiles)) {
     records[tile].reach = reach;
-    if (area.only && !holds(read, common(most, needed_around(reach, rules_reach(book)))))
+    if (area.only && !holds(read, common(most, needed_around(reach, rules_reach(inputs.book)))))
       throw WindowTooSmall("tile " + text_of(tile) + " hears of more");
   }
 }
@@ -406,7 +405,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
                                .rows = report.rows,
                                .area = *tile},
                               tile->only ? records_before(*part, cache.get()) : AreaRecord());
-    if (cache) note_reaches(*tile, {located, prepared, inputs.tables, *tile}, inputs.rules.book, tiles_here);
+    if (cache) note_reaches(*tile, {located, prepared, inputs.tables, inputs.rules.book, *tile}, tiles_here);
     area = told_area(tiles_here, located.facts.coverage);
     report.rows = std::move(area->rows);
     record.data_sha256 = area->data_sha256, record.data_time = area->data_time, record.counts = area->counts;

@@ -95,7 +95,11 @@ struct TileKeys::Impl {
 
   void pack_class(std::uint32_t number, Packer& out) const {
     const evidence::StyleInputs& s = in.styles;
-    out << s.facts.features[number];
+    // Of features the answers are packed below; explanations of the style show what it asked.
+    const classify::FeatureVector& features = s.facts.features[number];
+    out << features.has(classify::Feature::area);
+    for (std::size_t f = 0; f < classify::kFeatureCount; ++f)
+      if (s.tables.style.asks(f)) out << features.at(f);
     out << s.tags.dates[number] << s.tags.years[number] << s.tags.roofs[number] << s.tags.points_of(number);
     if (const std::int32_t why = s.tags.non_house[number]; why >= 0) {
       const classify::NonHouse& reason = s.tags.reasons[static_cast<std::size_t>(why)];

@@ -102,6 +102,13 @@ Tables Tables::read(const std::string& configs) {
   return t;
 }
 
+bool any_asks(const Tables& tables, std::string_view group) {
+  for (const EvidenceModel* model : {&tables.style, &tables.era, &tables.morphology, &tables.storeys, &tables.roof})
+    for (std::size_t f = 0; f < kFeatureCount; ++f)
+      if (kFeatures[f].group == group && model->asks(f)) return true;
+  return false;
+}
+
 std::size_t storey_answer(const Tables& tables, double storeys) {
   std::size_t best = 0;
   for (std::size_t i = 1; i < tables.storey_counts.size(); ++i)

@@ -65,6 +65,9 @@ struct Tables {
   static Tables read_without_weights(const std::string& configs);
 };
 
+/// Whether any question asks for a feature of the group (FeatureInfo::group).
+bool any_asks(const Tables& tables, std::string_view group);
+
 /// The answer of `storeys` that a count belongs to.
 std::size_t storey_answer(const Tables& tables, double storeys);
 

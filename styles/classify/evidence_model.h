@@ -2,6 +2,7 @@
 // file.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -43,6 +44,10 @@ class EvidenceModel {
   static EvidenceModel read(const std::string& path, std::span<const std::string_view> answers = {});
 
   const std::vector<std::string>& answers() const { return answers_; }
+  /// Whether it has weights for the feature: others can take any value without a word in any answer.
+  bool asks(std::size_t feature) const {
+    return std::ranges::any_of(tables_, [feature](const Table& t) { return t.feature == feature; });
+  }
 
   /// Log-odds per answer.
   /// \param tags  false: features of the group `tag` are not asked

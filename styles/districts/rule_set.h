@@ -1,6 +1,7 @@
 // Rule sets of a city or region: what they are once read. The language is described in docs/districts.md.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -133,6 +134,13 @@ struct RuleSets {
   /// there is none. Exact: whole numbers only.
   static constexpr std::uint32_t kNoSet = 0xffffffff;
   std::uint32_t choose(model::Location place) const;
+
+  /// Whether a rule asks for figures of a building's district cell.
+  bool ask_cells() const {
+    return std::ranges::any_of(sets, [](const RuleSet& set) {
+      return std::ranges::any_of(set.rules, [](const Rule& r) { return !r.where.cell.empty(); });
+    });
+  }
 };
 
 /// Even-odd; a point on the boundary counts as inside. Exact.
