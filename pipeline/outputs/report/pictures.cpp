@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <unordered_map>
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/text.h"
@@ -196,13 +197,15 @@ class DetailPainter {
   }
 
   const ElementGeometry& geometry_of(std::uint32_t element) {
-    const auto [found, added] = geometry_.try_emplace(element);
-    if (added) found->second = element_geometry(*region_.elements.at(element).element, false);
+    const model::Element& form = *region_.elements.at(element).element;
+    const auto [found, added] = geometry_.try_emplace(&form);
+    if (added) found->second = element_geometry(form, false);
     return found->second;
   }
 
   const model::Region& region_;
-  std::map<std::uint32_t, ElementGeometry> geometry_;  ///< by element
+  std::unordered_map<const model::Element*, ElementGeometry>
+      geometry_;  ///< of the forms, which come in several colours
 };
 
 /// Corners of what stands within `reach` of a spot.
