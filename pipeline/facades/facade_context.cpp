@@ -304,6 +304,11 @@ std::optional<Value> context_value(const FacadeContext& context, std::string_vie
   return place->read(context);
 }
 
+bool is_of_part(std::string_view name) {
+  // Those of edges and bays read the wall segment.
+  return name.starts_with("building.") || name.starts_with("roof.") || name.starts_with("storey.");
+}
+
 std::vector<std::string> unread_overrides(const model::Building& building) {
   using model::DetailKind;
   // What storey.windows, bay.windows and bay.uses read.

@@ -30,6 +30,8 @@ struct ContextAttribute {
 /// All of them, by name.
 const std::vector<ContextAttribute>& context_attributes();
 std::optional<grammar::Value> context_value(const FacadeContext& context, std::string_view name);
+/// Whether a name of the list has one value on all walls of a part.
+bool is_of_part(std::string_view name);
 
 /// m from the left end of the wall segment to each mapped entrance, in order, each place once.
 std::vector<double> entrance_places(const FacadeContext& context);

@@ -72,11 +72,13 @@ class FacadeBuilder {
     const double eaves = eaves_level(part);
     link_corners(segments, walls, eaves);
     portal_elements_ = yielding_ = missed_doors_ = 0;
+    checked_portals_.clear();
     if (!portals_.empty()) {
       try_passages(part, walls);
       close_portals();
     }
     take_parameters(*grammar, building);
+    memo_.values.clear();
     for (const FacadeSegment& segment : segments) {
       if (segment.kind == model::WallSegmentKind::party_wall || segment.kind == model::WallSegmentKind::unknown)
         continue;
@@ -120,6 +122,8 @@ class FacadeBuilder {
     outside_ = grammar.deriver->outside_values(attributes);
     derive_options_.outside = &outside_;
     derive_options_.orders_only = true;
+    derive_options_.memo = &memo_;
+    derive_options_.is_shared = &is_of_part;
   }
 
   static grammar::Shape wall_shape(const WallFrame& wall) {
@@ -239,7 +243,16 @@ class FacadeBuilder {
     for (PassagePortal& m : portals_)
       if (m.state == PortalState::open && opened.refusals[i++] != OpeningRefusal::none) m.state = PortalState::blocked;
     const auto triangles = geometry::triangulate(opened.solid, part.lod2, part.lod2_triangles);
-    return triangles && geometry::check_solid(opened.solid, *triangles, geometry::kBuilt).valid();
+    if (!triangles || !geometry::check_solid(opened.solid, *triangles, geometry::kBuilt).valid()) return false;
+    checked_portals_ = opened.changed_borders.empty() ? open_portals() : std::vector<bool>{};
+    return true;
+  }
+
+  /// Which portals are open.
+  std::vector<bool> open_portals() const {
+    std::vector<bool> out;
+    for (const PassagePortal& m : portals_) out.push_back(m.state == PortalState::open);
+    return out;
   }
 
   /// Leaves open what the solid takes: all passages together, else one after another.
@@ -321,7 +334,8 @@ class FacadeBuilder {
     }
     out.opened = cut_openings(part.lod2, walls, openings, rounding_);
     auto triangles = geometry::triangulate(out.opened.solid, part.lod2, part.lod2_triangles, out.opened.triangles);
-    if (!triangles || !(proved_valid(out.opened, *triangles) ||
+    const bool passages_checked = !checked_portals_.empty() && checked_portals_ == open_portals();
+    if (!triangles || !(proved_valid(out.opened, *triangles, passages_checked) ||
                         geometry::check_solid(out.opened.solid, *triangles, geometry::kBuilt).valid()))
       return std::nullopt;
     out.triangles = std::move(*triangles);
@@ -413,11 +427,14 @@ class FacadeBuilder {
   const FacadeOptions& options_;
   CornerRounding rounding_ = CornerRounding::nearest;  ///< of the part at work
   grammar::DeriveOptions derive_options_;
+  grammar::AttributeMemo memo_;                         ///< of the part at work
   const GrammarLibrary::Entry* derived_for_ = nullptr;  ///< whose values derive_options_ holds, with these parameters
   decltype(model::Building::preset_parameters) parameters_;
   std::vector<std::uint32_t> outside_;
   std::vector<Asked> asked_;
   std::vector<PassagePortal> portals_;
+  /// The open portals with which, and no other opening, the solid is valid and its borders stayed as they are; empty: not known.
+  std::vector<bool> checked_portals_;
   std::size_t portal_elements_ = 0;  ///< the first of asked_: what close_portals() put there
   std::size_t yielding_ = 0;         ///< elements that would stand in a portal
   std::size_t missed_doors_ = 0;     ///< those of them that are doors at mapped entrances

@@ -47,9 +47,9 @@ class Proof {
   Proof(const OpenedSolid& opened, const model::SolidTriangles& triangles)
       : opened_(opened), solid_(opened.solid), triangles_(triangles) {}
 
-  bool holds() {
+  bool holds(bool passages_checked) {
     for (const model::Opening& o : opened_.openings)
-      if (o.kind == model::OpeningKind::passage) return false;
+      if (is_passage(o) && !passages_checked) return false;
     if (triangles_.first.size() != solid_.faces.size() + 1) return false;
     grid_.resize(solid_.vertices.size());
     for (std::size_t i = 0; i < grid_.size(); ++i) grid_[i] = geometry::to_grid(solid_.vertices[i]);
@@ -57,8 +57,10 @@ class Proof {
     changed_of_.assign(solid_.faces.size(), kNone);
     is_new_.assign(solid_.faces.size(), false);
     for (const model::Opening& o : opened_.openings) {
-      is_new_[o.polygon] = true;
-      for (std::uint32_t r = 0; r < o.reveal_count; ++r) is_new_[o.first_reveal + r] = true;
+      if (!is_passage(o)) {
+        is_new_[o.polygon] = true;
+        for (std::uint32_t r = 0; r < o.reveal_count; ++r) is_new_[o.first_reveal + r] = true;
+      }
       if (changed_of_[o.wall] != kNone) continue;
       if (!add_changed(o.wall) || !is_thin_wall(changed_.back())) return false;
       if (!std::binary_search(opened_.changed_borders.begin(), opened_.changed_borders.end(), o.wall) &&
@@ -72,6 +74,7 @@ class Proof {
       if (changed_of_[f] == kNone && !add_changed(f)) return false;
     }
     for (const model::Opening& o : opened_.openings) {
+      if (is_passage(o)) continue;
       ChangedFace& wall = changed_[changed_of_[o.wall]];
       const auto in = inward(o, wall);
       if (!in || !turns_left(o.polygon, *in)) return false;
@@ -88,6 +91,8 @@ class Proof {
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
+
+  static bool is_passage(const model::Opening& o) { return o.kind == model::OpeningKind::passage; }
 
   std::span<const Triangle> triangles_of(std::uint32_t face) const {
     return std::span(triangles_.triangles)
@@ -263,8 +268,8 @@ class Proof {
 
 }  // namespace
 
-bool proved_valid(const OpenedSolid& opened, const model::SolidTriangles& triangles) {
-  return Proof(opened, triangles).holds();
+bool proved_valid(const OpenedSolid& opened, const model::SolidTriangles& triangles, bool passages_checked) {
+  return Proof(opened, triangles).holds(passages_checked);
 }
 
 }  // namespace blockrand::facades

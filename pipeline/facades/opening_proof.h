@@ -40,10 +40,15 @@ namespace blockrand::facades {
 /// times that off, so that reveals meet these faces as little as before. Tested are:
 /// 4. No such point lies where another vertex is.
 /// 5. Each such face by check_solid's rules of polygons (geometry::sound_polygon), and as in 3.
-/// Solids with passages, whose sides are no prisms, are left to check_solid.
+///
+/// Passages, whose sides are no prisms, are left to check_solid: it must have found the solid with the same passages and no other opening
+/// valid, and no border of that may have points (OpenedSolid::changed_borders), so that its tunnels and the faces that neither it nor
+/// this solid changed are known not to meet. The walls of portals are walls with holes; tunnels are among the faces that stayed, which
+/// walls with holes and changed borders are held against (3 and 5). Reveals keep off tunnels since blocks do not meet.
 ///
 /// \param triangles  of opened.solid, by geometry::triangulate; of faces that are not opened those that were checked
-bool proved_valid(const OpenedSolid& opened, const model::SolidTriangles& triangles);
+/// \param passages_checked  what is said of passages above holds; else solids with passages are not proved
+bool proved_valid(const OpenedSolid& opened, const model::SolidTriangles& triangles, bool passages_checked = false);
 
 inline constexpr double kMostLean = 0.1;  ///< tangent; keeps what rounding shifts in a view along the normal small
 

@@ -1,9 +1,11 @@
 #include "pipeline/geometry/box_index.h"
 
 #include <algorithm>
+#include <bit>
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/index/rtree.hpp>
+#include <boost/iterator/function_output_iterator.hpp>
 
 namespace blockrand::geometry {
 
@@ -51,6 +53,27 @@ Box grown(const PlanBox& box, double by) {
   return {Corner(box.minimum.x - by, box.minimum.y - by), Corner(box.maximum.x + by, box.maximum.y + by)};
 }
 
+/// Sorts numbers that are all different. Many that lie close together, as those of a neighbourhood do, become bits of words.
+void sort_numbers(std::vector<std::uint32_t>& numbers) {
+  constexpr std::size_t kFew = 32, kBits = 64;
+  if (numbers.size() >= kFew) {
+    const auto [least, most] = std::minmax_element(numbers.begin(), numbers.end());
+    const std::uint32_t first = *least;
+    const std::size_t words = (*most - first) / kBits + 1;
+    if (words <= 4 * numbers.size()) {
+      std::vector<std::uint64_t> bits(words, 0);
+      for (const std::uint32_t n : numbers) bits[(n - first) / kBits] |= std::uint64_t{1} << ((n - first) % kBits);
+      std::size_t at = 0;
+      for (std::size_t w = 0; w < words; ++w)
+        for (std::uint64_t left = bits[w]; left != 0; left &= left - 1)
+          numbers[at++] =
+              first + static_cast<std::uint32_t>(w * kBits) + static_cast<std::uint32_t>(std::countr_zero(left));
+      return;
+    }
+  }
+  std::sort(numbers.begin(), numbers.end());
+}
+
 }  // namespace
 
 struct BoxIndex::Tree {
@@ -72,11 +95,11 @@ BoxIndex::BoxIndex(std::vector<PlanBox> boxes) : boxes_(std::move(boxes)) {
 std::vector<std::uint32_t> BoxIndex::near(const PlanBox& box, double distance) const {
   std::vector<std::uint32_t> out;
   if (!tree_ || box.empty()) return out;
-  const auto near_enough = [&](const Tree::Entry& entry) { return boxes_[entry.second].near(box, distance); };
-  for (auto entry = tree_->boxes.qbegin(index::intersects(grown(box, distance + kRounding)));
-       entry != tree_->boxes.qend(); ++entry)
-    if (near_enough(*entry)) out.push_back(entry->second);
-  std::sort(out.begin(), out.end());
+  const auto take = [&](const Tree::Entry& entry) {
+    if (boxes_[entry.second].near(box, distance)) out.push_back(entry.second);
+  };
+  tree_->boxes.query(index::intersects(grown(box, distance + kRounding)), boost::make_function_output_iterator(take));
+  sort_numbers(out);
   return out;
 }
 

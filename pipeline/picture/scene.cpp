@@ -126,43 +126,38 @@ void Scene::add_blended_triangle(const std::array<Point3, 3>& corners, const std
 
 void Scene::set_ground(double z, Colour colour) { ground_ = Ground{z - origin_.z, colour}; }
 
-void Scene::append(const Scene& other, std::uint32_t first_object) {
+void Scene::append_faces(const Scene& other, std::uint32_t first_object) {
   assert(origin_ == other.origin_);
+  const auto first_blend = static_cast<std::uint32_t>(blends_.size());
+  const std::size_t first_face = faces_.size();
   // No room to spare: a scene of detail has many triangles.
-  triangles_.reserve(triangles_.size() + other.triangles_.size());
-  faces_.reserve(faces_.size() + other.faces_.size());
-  const auto first_face = static_cast<std::uint32_t>(faces_.size()),
-             first_blend = static_cast<std::uint32_t>(blends_.size());
-  for (const Triangle& t : other.triangles_) triangles_.push_back({t.corners, t.face + first_face});
-  for (Face face : other.faces_) {
-    face.object += first_object;
-    if (face.blend != kNoBlend) face.blend += first_blend;
-    faces_.push_back(face);
+  faces_.reserve(first_face + other.faces_.size());
+  faces_.insert(faces_.end(), other.faces_.begin(), other.faces_.end());
+  for (std::size_t f = first_face; f < faces_.size(); ++f) {
+    faces_[f].object += first_object;
+    if (faces_[f].blend != kNoBlend) faces_[f].blend += first_blend;
   }
   blends_.insert(blends_.end(), other.blends_.begin(), other.blends_.end());
   if (!ground_) ground_ = other.ground_;
 }
 
-void Scene::append(Scene&& other, std::uint32_t first_object) {
-  if (!empty()) return append(std::as_const(other), first_object);
-  assert(origin_ == other.origin_);
-  triangles_ = std::move(other.triangles_);
-  faces_ = std::move(other.faces_);
-  blends_ = std::move(other.blends_);
-  for (Face& face : faces_) face.object += first_object;
-  if (!ground_) ground_ = other.ground_;
+void Scene::append(const Scene& other, std::uint32_t first_object) {
+  const auto first_face = static_cast<std::uint32_t>(faces_.size());
+  append_faces(other, first_object);
+  triangles_.reserve(triangles_.size() + other.triangles_.size());
+  for (const Triangle& t : other.triangles_) triangles_.push_back({t.corners, t.face + first_face});
 }
 
-Scene Scene::without(const std::vector<bool>& hidden) const {
-  Scene out(origin_);
-  out.ground_ = ground_;
-  out.faces_ = faces_;
-  out.blends_ = blends_;
-  std::ranges::copy_if(triangles_, std::back_inserter(out.triangles_), [&](const Triangle& t) {
-    const std::uint32_t object = faces_[t.face].object;
+void Scene::append_without(const Scene& other, const std::vector<bool>& hidden) {
+  const auto first_face = static_cast<std::uint32_t>(faces_.size());
+  append_faces(other, 0);
+  const auto stays = [&](const Triangle& t) {
+    const std::uint32_t object = other.faces_[t.face].object;
     return object >= hidden.size() || !hidden[object];
-  });
-  return out;
+  };
+  triangles_.reserve(triangles_.size() + static_cast<std::size_t>(std::ranges::count_if(other.triangles_, stays)));
+  for (const Triangle& t : other.triangles_)
+    if (stays(t)) triangles_.push_back({t.corners, t.face + first_face});
 }
 
 void Scene::check() const {

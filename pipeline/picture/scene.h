@@ -53,12 +53,10 @@ class Scene {
   void set_ground(double z, Colour colour);
   /// Everything of `other`, whose origin must be the same, its objects renumbered by adding `first_object`.
   void append(const Scene& other, std::uint32_t first_object = 0);
-  /// Likewise; where this is empty, the lists of `other` become its own.
-  void append(Scene&& other, std::uint32_t first_object = 0);
+  /// Likewise without some objects. \param hidden  by object of `other`; what lies behind its end comes along
+  void append_without(const Scene& other, const std::vector<bool>& hidden);
   /// Room for so many triangles more.
   void reserve(std::size_t triangles) { triangles_.reserve(triangles_.size() + triangles); }
-  /// The same without some objects. \param hidden  by object; what lies behind its end stays
-  Scene without(const std::vector<bool>& hidden) const;
 
   Point3 origin() const { return origin_; }
   /// Of the triangles, in the coordinates of what was added.
@@ -109,6 +107,8 @@ class Scene {
   void push_face(const model::Solid& solid, const model::SolidTriangles& triangles, std::size_t t, Point3 offset,
                  Colour colour, std::uint32_t object);
 
+  /// All of `other` but its triangles.
+  void append_faces(const Scene& other, std::uint32_t first_object);
   /// \throws base::UnpackError  a triangle has no face, or a face no blend
   void check() const;
 

@@ -1,5 +1,8 @@
 #include "pipeline/outputs/citygml/citygml_output.h"
 
+#include <string>
+#include <string_view>
+
 #include "pipeline/outputs/citygml/citygml_writer.h"
 
 namespace blockrand::outputs {
@@ -39,8 +42,21 @@ class CityGmlOutput : public OutputOf<bool> {
 
  private:
   base::PublishedFile write(const model::Region& region, const std::string& name) const {
-    return write_text_file("citygml/" + name + ".gml", write_citygml(region, citygml_options(region, context_)),
-                           context_);
+    const std::string path = "citygml/" + name + ".gml";
+    const CityGmlOptions options = citygml_options(region, context_);
+    if (context_.options.gzip) return write_text_file(path, write_citygml(region, options), context_);
+    // Piece by piece: the text of a tile is larger than all else that is made of it.
+    constexpr std::size_t kPiece = 1 << 18;
+    base::StagedFile file = context_.folder.create(path);
+    std::string waiting;
+    write_citygml(region, options, [&](std::string_view bytes) {
+      waiting += bytes;
+      if (waiting.size() < kPiece) return;
+      file.append(waiting);
+      waiting.clear();
+    });
+    file.append(waiting);
+    return file.close();
   }
 
   const OutputContext& context_;

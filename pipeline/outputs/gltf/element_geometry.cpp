@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <tuple>
+#include <span>
 #include <utility>
 
+#include "pipeline/base/random.h"
+#include "pipeline/outputs/gltf/point_numbers.h"
 #include "pipeline/outputs/placed_element.h"
 
 namespace blockrand::outputs {
@@ -13,63 +14,92 @@ namespace {
 
 using model::Point3;
 
+/// Twice the area of a face, along its normal.
+Point3 area_vector(std::span<const Point3> corners) {
+  Point3 n;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Point3 &p = corners[i], &q = corners[i + 1 == corners.size() ? 0 : i + 1];
+    n.x += (p.y - q.y) * (p.z + q.z);
+    n.y += (p.z - q.z) * (p.x + q.x);
+    n.z += (p.x - q.x) * (p.y + q.y);
+  }
+  return n;
+}
+
+/// Calls `visit(part, corners)` for each face of an element.
+template <class Visit>
+void for_each_face(const model::Element& element, bool with_reveal, Visit&& visit) {
+  const model::ElementMesh& mesh = element.mesh;
+  std::vector<Point3> corners;
+  for (const model::ElementFace& face : mesh.faces) {
+    corners.clear();
+    for (std::uint32_t i = 0; i < face.count; ++i) corners.push_back(mesh.vertices[mesh.indices[face.first + i]]);
+    visit(face.part, std::as_const(corners));
+  }
+  const auto& outline = element.opening.outline;
+  if (!with_reveal || !(element.opening.reveal > 0)) return;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const model::Point2 a = outline[i], b = outline[(i + 1) % outline.size()];
+    const double depth = -element.opening.reveal;
+    corners = {{a.x, a.y, 0}, {b.x, b.y, 0}, {b.x, b.y, depth}, {a.x, a.y, depth}};
+    visit(model::ElementPart::wall, std::as_const(corners));
+  }
+}
+
 /// Collects faces of one part; corners with equal place and normal become one.
 class PartBuilder {
  public:
-  void add_face(const std::vector<Point3>& corners) {
-    double nx = 0, ny = 0, nz = 0;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      const Point3 &p = corners[i], &q = corners[i + 1 == corners.size() ? 0 : i + 1];
-      nx += (p.y - q.y) * (p.z + q.z);
-      ny += (p.z - q.z) * (p.x + q.x);
-      nz += (p.x - q.x) * (p.y + q.y);
-    }
-    const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
+  /// \param most_corners  that the faces have together
+  explicit PartBuilder(std::size_t most_corners) : most_corners_(most_corners) {}
+
+  void add_face(std::span<const Point3> corners) {
+    const Point3 n = area_vector(corners);
+    const double length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
     if (!(length > 0)) return;
     const auto quantise = [&](double v) { return static_cast<std::int8_t>(std::nearbyint(v / length * 127)); };
-    const std::array<std::int8_t, 3> normal{quantise(nx), quantise(ny), quantise(nz)};
+    const std::array<std::int8_t, 3> normal{quantise(n.x), quantise(n.y), quantise(n.z)};
     if (pieces.empty() || pieces.back().vertices.size() + corners.size() > ElementGeometry::kMostVertices) {
       pieces.emplace_back();
-      known_.clear();
+      known_.start(std::min(most_corners_, ElementGeometry::kMostVertices));
     }
-    std::vector<std::uint32_t> at;
-    const Point3 exact{nx / length, ny / length, nz / length};
-    for (const Point3& p : corners) at.push_back(vertex(p, normal, exact));
+    at_.clear();
+    const Point3 exact{n.x / length, n.y / length, n.z / length};
+    for (const Point3& p : corners) at_.push_back(vertex(p, normal, exact));
     auto& indices = pieces.back().indices;
-    for (std::size_t i = 2; i < at.size(); ++i) indices.insert(indices.end(), {at[0], at[i - 1], at[i]});
+    for (std::size_t i = 2; i < at_.size(); ++i) indices.insert(indices.end(), {at_[0], at_[i - 1], at_[i]});
   }
   std::vector<ElementGeometry::PartTriangles> pieces;  ///< several where one would be too large
 
  private:
   std::uint32_t vertex(const Point3& p, std::array<std::int8_t, 3> normal, const Point3& exact) {
     auto& vertices = pieces.back().vertices;
-    const auto [place, added] = known_.try_emplace({p, normal}, static_cast<std::uint32_t>(vertices.size()));
-    if (added) vertices.push_back({p, normal, exact});
-    return place->second;
+    const auto next = static_cast<std::uint32_t>(vertices.size());
+    const std::uint32_t word = static_cast<std::uint32_t>(static_cast<std::uint8_t>(normal[0])) << 16 |
+                               static_cast<std::uint32_t>(static_cast<std::uint8_t>(normal[1])) << 8 |
+                               static_cast<std::uint8_t>(normal[2]);
+    const std::uint32_t number = known_.first(base::mix64(hash_of(p) ^ word), next, [&](std::uint32_t other) {
+      return vertices[other].position == p && vertices[other].normal == normal;
+    });
+    if (number == next) vertices.push_back({p, normal, exact});
+    return number;
   }
-  std::map<std::pair<Point3, std::array<std::int8_t, 3>>, std::uint32_t> known_;
+  std::size_t most_corners_;
+  PointNumbers known_;  ///< of the last piece's vertices
+  std::vector<std::uint32_t> at_;
 };
 
 }  // namespace
 
 ElementGeometry element_geometry(const model::Element& element, bool with_reveal) {
-  std::array<PartBuilder, model::kElementPartCount> builders;
-  const model::ElementMesh& mesh = element.mesh;
-  std::vector<Point3> corners;
-  for (const model::ElementFace& face : mesh.faces) {
-    corners.clear();
-    for (std::uint32_t i = 0; i < face.count; ++i) corners.push_back(mesh.vertices[mesh.indices[face.first + i]]);
-    builders[static_cast<std::size_t>(face.part)].add_face(corners);
-  }
-  const auto& outline = element.opening.outline;
-  if (with_reveal && element.opening.reveal > 0) {
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-      const model::Point2 a = outline[i], b = outline[(i + 1) % outline.size()];
-      const double depth = -element.opening.reveal;
-      corners = {{a.x, a.y, 0}, {b.x, b.y, 0}, {b.x, b.y, depth}, {a.x, a.y, depth}};
-      builders[static_cast<std::size_t>(model::ElementPart::wall)].add_face(corners);
-    }
-  }
+  std::array<std::size_t, model::kElementPartCount> corner_count{};
+  for_each_face(element, with_reveal, [&](model::ElementPart part, std::span<const Point3> corners) {
+    corner_count[static_cast<std::size_t>(part)] += corners.size();
+  });
+  std::vector<PartBuilder> builders;
+  for (const std::size_t n : corner_count) builders.emplace_back(n);
+  for_each_face(element, with_reveal, [&](model::ElementPart part, std::span<const Point3> corners) {
+    builders[static_cast<std::size_t>(part)].add_face(corners);
+  });
   ElementGeometry out;
   for (std::size_t i = 0; i < builders.size(); ++i)
     for (ElementGeometry::PartTriangles& piece : builders[i].pieces) {
@@ -84,6 +114,21 @@ ElementGeometry element_geometry(const model::Element& element, bool with_reveal
       out.parts.push_back(std::move(piece));
     }
   return out;
+}
+
+std::optional<std::pair<Point3, Point3>> element_box(const model::Element& element, bool with_reveal) {
+  std::optional<std::pair<Point3, Point3>> box;
+  for_each_face(element, with_reveal, [&](model::ElementPart, std::span<const Point3> corners) {
+    const Point3 n = area_vector(corners);
+    if (!(std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) > 0)) return;
+    if (!box) box.emplace(corners[0], corners[0]);
+    auto& [min, max] = *box;
+    for (const Point3& p : corners) {
+      min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
+      max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+    }
+  });
+  return box;
 }
 
 std::vector<InstanceGroup> element_instances(const model::Region& region, const Frame& frame) {

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "pipeline/model/region.h"
@@ -32,6 +34,9 @@ struct ElementGeometry {
 
 /// \param with_reveal  also the strip from the wall to the opening's end, as part `wall`, which solids have as faces
 ElementGeometry element_geometry(const model::Element& element, bool with_reveal);
+
+/// The box around all its triangles, m: min and max of the geometry; nothing where it has none.
+std::optional<std::pair<model::Point3, model::Point3>> element_box(const model::Element& element, bool with_reveal);
 
 /// An element where it stands, in east, north, up.
 struct ElementInstance {

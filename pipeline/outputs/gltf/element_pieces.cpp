@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <optional>
 #include <string>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include "pipeline/model/vector.h"
+#include "pipeline/outputs/gltf/point_numbers.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -127,16 +128,14 @@ std::vector<Piece> connected_parts(const Piece& piece) {
   };
   for (std::size_t t = 0; t + 2 < piece.indices.size(); t += 3)
     join(piece.indices[t], piece.indices[t + 1]), join(piece.indices[t], piece.indices[t + 2]);
-  std::vector<std::uint32_t> order(piece.vertices.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto key = [&](std::uint32_t i) {
+  PointNumbers numbers;
+  numbers.start(piece.vertices.size());
+  for (std::uint32_t i = 0; i < piece.vertices.size(); ++i) {
     const Piece::Vertex& v = piece.vertices[i];
-    return std::tuple(v.look.material, v.look.colour, v.position);
-  };
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return std::pair(key(a), a) < std::pair(key(b), b); });
-  for (std::size_t i = 1; i < order.size(); ++i)
-    if (key(order[i - 1]) == key(order[i])) join(order[i - 1], order[i]);
+    join(i, numbers.first(hash_of(v.position), i, [&](std::uint32_t other) {
+      return piece.vertices[other].position == v.position && piece.vertices[other].look == v.look;
+    }));
+  }
 
   std::vector<Piece> out;
   std::vector<std::uint32_t> part_of(piece.vertices.size(), model::kNoIndex), index(piece.vertices.size());
@@ -224,8 +223,10 @@ class Shapes {
   static std::string form(const Piece& piece) {
     std::string key;
     const auto add = [&](const auto& value) { key.append(reinterpret_cast<const char*>(&value), sizeof(value)); };
+    constexpr std::size_t kLook = 16;  // bytes, about
+    key.reserve(sizeof(std::size_t) + piece.indices.size() * sizeof(std::uint32_t) + kLook);
     add(piece.vertices.size());
-    for (const std::uint32_t i : piece.indices) add(i);
+    key.append(reinterpret_cast<const char*>(piece.indices.data()), piece.indices.size() * sizeof(std::uint32_t));
     const model::PartMaterial* last = nullptr;
     for (std::size_t i = 0; i < piece.vertices.size(); ++i) {
       const model::PartMaterial& look = piece.vertices[i].look;
@@ -235,7 +236,7 @@ class Shapes {
     }
     return key;
   }
-  std::map<std::string, std::vector<std::size_t>> by_form_;
+  std::unordered_map<std::string, std::vector<std::size_t>> by_form_;  // never gone through
 };
 
 double baked_bytes(const Piece& piece) {
@@ -254,9 +255,12 @@ class Planner {
   Planner(const model::Region& region, const std::vector<InstanceGroup>& groups) : groups_(groups) {
     std::vector<std::pair<std::size_t, std::vector<KindOfPiece>>> all;
     std::vector<std::size_t> weight(groups.size(), 0), order;
+    std::unordered_map<const model::Element*, ElementGeometry> geometry;  // of the forms, which come in several colours
     for (std::size_t g = 0; g < groups.size(); ++g) {
       const model::ColouredElement& element = region.elements.at(groups[g].element);
-      auto pieces = pieces_of(element, element_geometry(*element.element, true));
+      const auto [form, added] = geometry.try_emplace(element.element.get());
+      if (added) form->second = element_geometry(*element.element, true);
+      auto pieces = pieces_of(element, form->second);
       for (const KindOfPiece& p : pieces) weight[g] += p.piece.triangles() * groups[g].instances.size();
       if (!pieces.empty()) order.push_back(all.size());
       all.emplace_back(g, std::move(pieces));

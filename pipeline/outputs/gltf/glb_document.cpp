@@ -166,51 +166,48 @@ std::string GlbDocument::write(Compression compression) {
   const bool compress = compression == Compression::meshopt && !view_numbers_.empty();
   if (compress) use("EXT_meshopt_compression", true);
 
-  std::string binary;
+  // Bytes stay in their views until the file is put together: each is copied once.
+  std::uint64_t end = 0;       // of the binary part
   std::uint64_t unpacked = 0;  // size of the buffer that is there once everything is decompressed
   std::vector<std::string> views;
+  const auto aligned = [](std::uint64_t size) { return (size + kAlignment - 1) / kAlignment * kAlignment; };
   for (View& view : views_) {
     std::string json = "{";
+    end = aligned(end);
     if (!view.stream) {
-      pad(binary, kAlignment);
       field(json, "buffer", 0);
       field(json, "byteLength", view.bytes.size());
-      if (!binary.empty()) field(json, "byteOffset", binary.size());
-      binary += view.bytes;
+      if (end > 0) field(json, "byteOffset", end);
     } else {
       const StreamInfo info = info_of(*view.stream);
       if (info.coding != MeshoptCoding::triangles) pad(view.bytes, coded_size(*view.stream));
       const std::size_t length = view.bytes.size();
-      const std::uint64_t offset = compress ? unpacked : (binary.size() + kAlignment - 1) / kAlignment * kAlignment;
+      const std::uint64_t offset = compress ? unpacked : end;
       field(json, "buffer", compress ? 1 : 0);
       field(json, "byteLength", length);
       if (offset > 0) field(json, "byteOffset", offset);
       if (info.vertices) field(json, "byteStride", info.size);
-      pad(binary, kAlignment);
       if (compress) {
         const std::size_t size = coded_size(*view.stream);
         const std::size_t count = length / size;
-        const std::string coded = meshopt_encode(view.bytes, size, count, info.coding);
+        view.bytes = meshopt_encode(view.bytes, size, count, info.coding);
         json += ",\"extensions\":{\"EXT_meshopt_compression\":{";
         field(json, "buffer", 0);
-        field(json, "byteLength", coded.size());
-        if (!binary.empty()) field(json, "byteOffset", binary.size());
+        field(json, "byteLength", view.bytes.size());
+        if (end > 0) field(json, "byteOffset", end);
         field(json, "byteStride", size);
         field(json, "count", count);
         json += info.coding == MeshoptCoding::triangles ? ",\"mode\":\"TRIANGLES\"" : ",\"mode\":\"ATTRIBUTES\"";
         if (has_filter(info.coding)) json += ",\"filter\":\"EXPONENTIAL\"";
         json += "}}";
-        unpacked += (length + kAlignment - 1) / kAlignment * kAlignment;
-        binary += coded;
-      } else {
-        binary += view.bytes;
+        unpacked += aligned(length);
       }
       if (info.vertices || *view.stream == Stream::indices) field(json, "target", info.vertices ? 34962 : 34963);
     }
     json += '}';
     views.push_back(std::move(json));
-    view.bytes = {};
-    if (binary.size() > kMostBytes || unpacked > kMostBytes) throw std::length_error("too much data for one GLB");
+    end += view.bytes.size();
+    if (end > kMostBytes || unpacked > kMostBytes) throw std::length_error("too much data for one GLB");
   }
 
   std::string json = "{\"asset\":" + asset_->dump();
@@ -249,9 +246,9 @@ std::string GlbDocument::write(Compression compression) {
   append_list(json, "accessors", accessors_);
   append_list(json, "bufferViews", views);
   std::vector<std::string> buffers;
-  if (!binary.empty()) {
+  if (end > 0) {
     buffers.emplace_back("{");
-    field(buffers.back(), "byteLength", binary.size());
+    field(buffers.back(), "byteLength", end);
     buffers.back() += '}';
   }
   if (compress) {
@@ -263,10 +260,10 @@ std::string GlbDocument::write(Compression compression) {
   append_list(json, "buffers", buffers);
   json += '}';
   pad(json, 4, ' ');
-  pad(binary, 4);
+  const std::uint64_t binary = (end + 3) / 4 * 4;
 
   std::string out = "glTF";
-  const std::uint64_t total = 12 + 8 + json.size() + (binary.empty() ? 0 : 8 + binary.size());
+  const std::uint64_t total = 12 + 8 + json.size() + (binary == 0 ? 0 : 8 + binary);
   if (total > kMostBytes) throw std::length_error("too much data for one GLB");
   out.reserve(total);
   append_word(out, 2);
@@ -274,10 +271,16 @@ std::string GlbDocument::write(Compression compression) {
   append_word(out, json.size());
   out += "JSON";
   out += json;
-  if (!binary.empty()) {
-    append_word(out, binary.size());
+  if (binary > 0) {
+    append_word(out, binary);
     out.append("BIN\0", 4);
-    out += binary;
+    const std::size_t begin = out.size();
+    for (View& view : views_) {
+      out.resize(begin + aligned(out.size() - begin));
+      out += view.bytes;
+      view.bytes = {};
+    }
+    out.resize(begin + binary);
   }
   return out;
 }

@@ -13,6 +13,7 @@
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/model/vector.h"
 #include "pipeline/outputs/gltf/element_geometry.h"
+#include "pipeline/outputs/gltf/point_numbers.h"
 #include "pipeline/outputs/placed_element.h"
 
 namespace blockrand::outputs {
@@ -175,15 +176,11 @@ class Welder {
 
 /// Makes positions that are equal within a solid one index, so that welding by index is welding by position.
 void unify_equal_points(const std::vector<model::Point3>& points, std::uint32_t first, std::uint32_t count,
-                        std::vector<std::uint32_t>& representative, std::vector<std::uint32_t>& order) {
-  order.resize(count);
-  for (std::uint32_t i = 0; i < count; ++i) order[i] = first + i;
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return points[a] < points[b] || (points[a] == points[b] && a < b);
-  });
-  for (std::uint32_t i = 0; i < count; ++i)
-    representative[order[i]] =
-        i > 0 && points[order[i]] == points[order[i - 1]] ? representative[order[i - 1]] : order[i];
+                        std::vector<std::uint32_t>& representative, PointNumbers& numbers) {
+  numbers.start(count);
+  for (std::uint32_t i = first; i < first + count; ++i)
+    representative[i] =
+        numbers.first(hash_of(points[i]), i, [&](std::uint32_t other) { return points[other] == points[i]; });
 }
 
 /// Puts the triangles of an element that stands at `at` into the mesh.
@@ -289,7 +286,7 @@ class SolidWriter {
     const model::Solid& solid = *ref.solid;
     assert(ref.triangles->first.size() == solid.faces.size() + 1);
     const auto count = static_cast<std::uint32_t>(solid.vertices.size());
-    unify_equal_points(source_, ref.first_position, count, representative_, order_);
+    unify_equal_points(source_, ref.first_position, count, representative_, numbers_);
     welder_.start(ref.triangles->triangles.size() * 3);
     for (std::size_t f = 0; f < solid.faces.size(); ++f) {
       if (!ref.hidden.empty() && ref.hidden[f]) continue;
@@ -316,7 +313,8 @@ class SolidWriter {
 
  private:
   const std::vector<model::Point3>& source_;
-  std::vector<std::uint32_t> representative_, order_;
+  std::vector<std::uint32_t> representative_;
+  PointNumbers numbers_;
   Welder welder_;
 };
 

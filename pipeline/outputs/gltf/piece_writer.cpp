@@ -231,11 +231,11 @@ InstanceFigures write_pieces(GlbDocument& document, const model::Region& region,
   for (const PlacedPiece& piece : plan.placed) out.triangles += piece.shape.triangles() * piece.places.size();
   bool first = true;
   for (const InstanceGroup& group : groups) {
-    const ElementGeometry geometry = element_geometry(*region.elements.at(group.element).element, true);
-    if (geometry.parts.empty()) continue;
+    const auto box = element_box(*region.elements.at(group.element).element, true);
+    if (!box) continue;
     out.places += group.instances.size();
     for (const ElementInstance& at : group.instances)
-      widen(out, at, geometry.min, geometry.max, std::exchange(first, false));
+      widen(out, at, box->first, box->second, std::exchange(first, false));
   }
   return out;
 }

@@ -44,6 +44,8 @@ std::optional<std::string> embedded_view(std::span<const base::PublishedFile> fi
   view.explained.reset();
 
   std::string out = "{\"files\":{";
+  constexpr std::uint64_t kUsualRatio = 3;  // room is not touched before it is filled
+  out.reserve(std::min(bytes / kUsualRatio, most));
   bool fits = true;
   const auto add = [&](const std::string& path, std::string_view content) {
     append_packed(out, path, content, kLevel);
@@ -56,7 +58,8 @@ std::optional<std::string> embedded_view(std::span<const base::PublishedFile> fi
     add(std::string(kModel) + file.path, read(file.path));
     if (!fits) return std::nullopt;
   }
-  return out + "}}";
+  out += "}}";
+  return out;
 }
 
 std::string embedded_viewer() {

@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <unordered_map>
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/text.h"
@@ -27,6 +28,8 @@ using picture::Camera;
 using picture::Direction;
 
 constexpr model::Colour kGround{214, 214, 208};
+constexpr int kGroundCells = 80;  // of its mesh, along the longer side
+constexpr std::size_t kGroundTriangles = 2 * (kGroundCells + 1) * (kGroundCells + 1);
 
 /// Tiles from the densest one. Scattered villages in one picture would be specks: what lies further off is left out.
 constexpr std::int64_t kWholeReach = 5, kPartReach = 3;
@@ -194,13 +197,15 @@ class DetailPainter {
   }
 
   const ElementGeometry& geometry_of(std::uint32_t element) {
-    const auto [found, added] = geometry_.try_emplace(element);
-    if (added) found->second = element_geometry(*region_.elements.at(element).element, false);
+    const model::Element& form = *region_.elements.at(element).element;
+    const auto [found, added] = geometry_.try_emplace(&form);
+    if (added) found->second = element_geometry(form, false);
     return found->second;
   }
 
   const model::Region& region_;
-  std::map<std::uint32_t, ElementGeometry> geometry_;  ///< by element
+  std::unordered_map<const model::Element*, ElementGeometry>
+      geometry_;  ///< of the forms, which come in several colours
 };
 
 /// Corners of what stands within `reach` of a spot.
@@ -342,10 +347,29 @@ PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, s
 }
 
 void Pictures::add(PictureTile&& tile) {
-  scene_.append(std::move(tile.scene), static_cast<std::uint32_t>(buildings_.size()));
-  flat_.append(std::move(tile.flat), static_cast<std::uint32_t>(buildings_.size()));
-  detail_.append(std::move(tile.detail), static_cast<std::uint32_t>(buildings_.size()));
   buildings_.insert(buildings_.end(), tile.buildings.begin(), tile.buildings.end());
+  tiles_.push_back(std::move(tile));
+}
+
+void Pictures::join() {
+  // Scenes that grew with each tile would be copied as often. `flat` and `detail` will get what lies in the ones before.
+  const auto count = [&](picture::Scene PictureTile::*scene) {
+    return std::accumulate(tiles_.begin(), tiles_.end(), std::size_t{0},
+                           [&](std::size_t n, const PictureTile& t) { return n + (t.*scene).triangle_count(); });
+  };
+  const std::size_t bodies = count(&PictureTile::scene) + kGroundTriangles;
+  scene_.reserve(bodies);
+  flat_.reserve(count(&PictureTile::flat) + bodies);
+  detail_.reserve(count(&PictureTile::detail));
+  std::uint32_t first = 0;
+  for (PictureTile& tile : tiles_) {
+    scene_.append(tile.scene, first);
+    flat_.append(tile.flat, first);
+    detail_.append(tile.detail, first);
+    first += static_cast<std::uint32_t>(tile.buildings.size());
+    tile = PictureTile();
+  }
+  tiles_ = {};
 }
 
 /// One plane, or where the ground rises and falls a mesh through the grounds of the buildings.
@@ -362,12 +386,11 @@ void Pictures::lay_ground() {
     scene_.set_ground(low, kGround);
     return;
   }
-  constexpr int kCells = 80;          // along the longer side
   constexpr double kBorder = 60;      // m around the buildings
   constexpr double kSmoothing = 400;  // m²: nearer than its root, neighbours weigh alike
   const double west = box.min.x - kBorder, south = box.min.y - kBorder;
   const double width = box.max.x + kBorder - west, height = box.max.y + kBorder - south;
-  const double cell = std::max(width, height) / kCells;
+  const double cell = std::max(width, height) / kGroundCells;
   const int columns = static_cast<int>(width / cell) + 1, rows = static_cast<int>(height / cell) + 1;
   std::vector<double> z;
   for (int j = 0; j <= rows; ++j)
@@ -402,6 +425,7 @@ std::string Pictures::note() const {
 
 std::vector<outputs::ReportPicture> Pictures::take(int workers, const base::Memo* memo, std::string_view attribution) {
   if (buildings_.empty()) return {};
+  join();
   auto out = base::remembered<std::vector<outputs::ReportPicture>>(
       memo, "pictures",
       [&](base::Packer& packer) { packer << scene_ << flat_ << detail_ << buildings_ << plan_.spot << attribution; },
@@ -446,7 +470,7 @@ std::vector<outputs::ReportPicture> Pictures::shoot(int workers, std::string_vie
   for (const PicturedBuilding& b : buildings_) in_detail.push_back(b.detailed);
   const bool detailed = !detail_.empty();
   flat_.append(scene_);
-  if (detailed) detail_.append(flat_.without(in_detail));  // now all that the last picture shows
+  if (detailed) detail_.append_without(flat_, in_detail);  // now all that the last picture shows
   scene_ = picture::Scene(plan_.origin);
   if (detailed) near_by.refine(detail_, box_around(near.empty() ? core : near), kNearShadowMap);
 

@@ -78,9 +78,12 @@ class Pictures {
   std::string note() const;
 
  private:
+  /// Puts the tiles into one scene of each kind.
+  void join();
   void lay_ground();
   std::vector<outputs::ReportPicture> shoot(int workers, std::string_view attribution);
   PicturePlan plan_;
+  std::vector<PictureTile> tiles_;  ///< as they came
   picture::Scene scene_, flat_, detail_;
   std::vector<PicturedBuilding> buildings_;
 };

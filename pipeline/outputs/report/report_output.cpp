@@ -230,9 +230,12 @@ class ReportOutput : public OutputOf<TileShare> {
     view.data_time = context_.data_time;
     const auto read = [&](const std::string& path) {
       const std::string place = context_.folder.staging_path() + "/" + path;
-      std::ifstream file(place, std::ios::binary);
-      std::string content(std::istreambuf_iterator<char>(file), {});
-      if (!file.is_open() || file.bad()) throw base::OutputError(place + ": cannot be read back");
+      std::ifstream file(place, std::ios::binary | std::ios::ate);
+      std::string content;
+      if (file.is_open()) content.resize(static_cast<std::size_t>(std::max<std::streamoff>(0, file.tellg())));
+      file.seekg(0);
+      file.read(content.data(), static_cast<std::streamsize>(content.size()));
+      if (!file) throw base::OutputError(place + ": cannot be read back");
       return content;
     };
     std::optional<std::string> files = embedded_view(build.files, read, std::move(view));

@@ -110,6 +110,7 @@ std::string Run::key_of(std::uint32_t node) const {
 
 void Run::tell(Severity severity, std::string_view code, const Location& location, std::string message,
                std::string offending, std::string suggestion) {
+  own_ = true;  // each derivation tells what it finds
   if (!told_.emplace(std::string(code), std::array{location.file, location.line, location.column}).second) return;
   if (out_.diagnostics.size() >= options_.limits.diagnostics) {
     ++out_.untold;

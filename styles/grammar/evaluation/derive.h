@@ -38,6 +38,13 @@ struct DeriveLimits {
 /// Each name is asked once a derivation at most.
 using AttributeSource = std::function<std::optional<Value>(std::string_view name)>;
 
+/// Values of attributes that derivations share: those that depend on nothing of a single derivation, neither on its shape nor on its seed nor
+/// on values that are its own. The first derivation that needs one puts it here. For one thread, one program, and equal `attributes` and seeds of
+/// building and row.
+struct AttributeMemo {
+  std::vector<std::optional<Value>> values;  ///< by slot of the program; grows by itself
+};
+
 struct DeriveOptions {
   std::string start_rule;  ///< without parameters; empty: the program's
   std::uint64_t seed = 0;
@@ -49,6 +56,9 @@ struct DeriveOptions {
   /// ("building.storeys") may stand here, too.
   std::vector<std::pair<std::string, Value>> attributes;
   AttributeSource source;
+  AttributeMemo* memo = nullptr;  ///< null: all attributes are evaluated
+  bool (*is_shared)(std::string_view name) =
+      nullptr;  ///< of a name that `source` knows: all that share the memo get the same value
   const FileAccess* files = nullptr;
   std::string shape_name;  ///< `initialShape.name`
   DeriveLimits limits;

@@ -1,6 +1,7 @@
 // Values of attributes: from outside, from the importing file, or by their expression
 // (docs/rule_language.md §1.4, §1.5, §4.1).
 #include <algorithm>
+#include <utility>
 
 #include "pipeline/base/random.h"
 #include "styles/grammar/evaluation/run.h"
@@ -89,6 +90,16 @@ Value Run::outside_value(std::uint32_t index, bool& found) {
 void Run::evaluate_slot(std::uint32_t index) {
   AttributePhase& phase = *phase_;
   if (phase.state[index] != 0) return;
+  AttributeMemo* const memo = phase.importer == nullptr ? options_.memo : nullptr;
+  if (memo != nullptr) {
+    if (memo->values.size() <= index) memo->values.resize(program_.slots.size());
+    if (memo->values[index]) {
+      phase.values[index] = *memo->values[index];
+      phase.state[index] = 2;
+      return;
+    }
+  }
+  const bool own_before = std::exchange(own_, false);
   phase.state[index] = 1;
   const Slot& slot = program_.slots[index];
   const Definition& definition = program_.definitions[slot.definition];
@@ -99,6 +110,7 @@ void Run::evaluate_slot(std::uint32_t index) {
   if (phase.outside || own) value = outside_value(index, found);
   if (!found && slot.source_slot != kNone) {
     if (phase.state[slot.source_slot] == 0) evaluate_slot(slot.source_slot);
+    own_ = own_ || phase.own[slot.source_slot] || phase.state[slot.source_slot] != 2;
     value = phase.values[slot.source_slot];
     found = true;
   }
@@ -129,9 +141,13 @@ void Run::evaluate_slot(std::uint32_t index) {
     value = evaluate(slot.value, place);
     --function_depth_;
     locals_.resize(frame);
+    if (consistency == Consistency::none && shape.draws > 0) own_ = true;
     shape.seed = seed_before;
     shape.draws = draws_before;
   }
+  if (memo != nullptr && !own_) memo->values[index] = value;
+  phase.own[index] = own_;
+  own_ = own_before || own_;
   phase.values[index] = std::move(value);
   phase.state[index] = 2;
 }
@@ -140,6 +156,7 @@ void Run::evaluate_attributes() {
   AttributePhase phase;
   phase.values.assign(program_.slots.size(), 0.0);
   phase.state.assign(program_.slots.size(), 0);
+  phase.own.assign(program_.slots.size(), false);
   phase.shape = initial_;
   phase_ = &phase;
   for (const std::uint32_t slot : program_.slot_order) evaluate_slot(slot);
@@ -162,6 +179,7 @@ void Run::enter_dynamic(std::uint32_t module, Shape& shape, Place& importer) {
   phase.values = shape.attributes != nullptr ? *shape.attributes : std::vector<Value>();
   phase.values.resize(program_.slots.size(), 0.0);
   phase.state.assign(program_.slots.size(), 2);
+  phase.own.assign(program_.slots.size(), true);
   const std::vector<std::uint32_t>& slots = program_.modules[module].dynamic_slots;
   for (const std::uint32_t slot : slots) phase.state[slot] = 0;
   phase.shape = initial_;

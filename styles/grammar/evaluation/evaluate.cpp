@@ -286,11 +286,21 @@ const Value* Run::known_value(const Expression& e, const Place& place) const {
   if (found.kind == TargetKind::local) return &locals_[place.frame + found.index];
   if (found.kind == TargetKind::attribute) {
     if (phase_ == nullptr) return &(*place.shape->attributes)[found.index];
-    return phase_->state[found.index] == 2 ? &phase_->values[found.index] : nullptr;
+    if (phase_->state[found.index] != 2) return nullptr;
+    own_ = own_ || phase_->own[found.index];
+    return &phase_->values[found.index];
   }
   if (found.kind == TargetKind::unknown) {
-    const auto known = source_values_.find(std::string_view(program_.unit(place.module).name(e.name)));
-    if (known != source_values_.end() && known->second) return &*known->second;
+    if (source_of_use_.empty()) source_of_use_.resize(program_.modules.size());
+    std::vector<const Value*>& of_use = source_of_use_[place.module];
+    if (of_use.empty()) of_use.resize(program_.modules[place.module].targets.size());
+    const std::string& name = program_.unit(place.module).name(e.name);
+    if (of_use[e.use] == nullptr) {
+      const auto known = source_values_.find(std::string_view(name));
+      if (known != source_values_.end() && known->second) of_use[e.use] = &*known->second;
+    }
+    if (phase_ != nullptr && of_use[e.use] != nullptr && is_own(name)) own_ = true;
+    return of_use[e.use];
   }
   return nullptr;
 }
@@ -329,6 +339,7 @@ Value Run::evaluate_name(const Expression& e, Place& place) {
 }
 
 Value Run::read_source(const Expression& e, std::string_view name) {
+  if (phase_ != nullptr && is_own(name)) own_ = true;
   auto known = source_values_.find(name);
   if (known == source_values_.end()) {
     std::optional<Value> value;
@@ -352,6 +363,7 @@ Value Run::read_attribute_slot(std::uint32_t slot, Place& place) {
            "the value of " + program_.slots[slot].name + " depends on itself; 0 is taken", program_.slots[slot].name);
       return 0.0;
     }
+    own_ = own_ || phase_->own[slot];
     return phase_->values[slot];
   }
   return (*place.shape->attributes)[slot];
@@ -381,6 +393,7 @@ Value nothing_of(const BuiltIn& entry) {
 }  // namespace
 
 Value Run::read_shape_attribute(const Expression& e, std::uint32_t number, Place& place) {
+  own_ = true;
   if (without(number)) return nothing_of(built_ins()[number]);
   if (const auto read = built_in_actions().attributes[number]) return read(*place.shape);
   const std::string_view name = built_ins()[number].name;
@@ -403,7 +416,10 @@ Value Run::read_shape_attribute(const Expression& e, std::uint32_t number, Place
 Value Run::call_function(const Expression& e, const Target& found, Place& place) {
   if (without(found.index)) return nothing_of(built_ins()[found.index]);
   const BuiltInActions& actions = built_in_actions();
-  if (const SpecialFunction special = actions.special_functions[found.index]) return (this->*special)(e, place);
+  if (const SpecialFunction special = actions.special_functions[found.index]) {
+    own_ = true;
+    return (this->*special)(e, place);
+  }
   const auto overloads = actions.functions[found.index];
   const std::string_view name = built_ins()[found.index].name;
   if (overloads.empty()) {

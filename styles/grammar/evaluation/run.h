@@ -201,6 +201,9 @@ class Run {
   void evaluate_attributes();
   void evaluate_slot(std::uint32_t slot);
   Value outside_value(std::uint32_t slot, bool& found);
+  bool is_own(std::string_view source_name) const {
+    return options_.is_shared == nullptr || !options_.is_shared(source_name);
+  }
   void enter_dynamic(std::uint32_t module, Shape& shape, Place& importer);
   void set_slot(Shape& shape, std::uint32_t slot, Value value);
 
@@ -264,17 +267,21 @@ class Run {
   std::set<std::pair<std::string, std::array<std::uint32_t, 3>>, std::less<>> told_;
   std::unordered_set<std::uint64_t> told_leaves_;  ///< uses of symbols without rule: told once
   std::map<std::string, std::optional<Value>, std::less<>> source_values_;
+  mutable std::vector<std::vector<const Value*>>
+      source_of_use_;  ///< by module and use: into source_values_; null: look there
   std::map<std::pair<std::string, Type>, Report> reports_;
 
   /// The attribute phase, at the start and for each dynamic import.
   struct AttributePhase {
     std::vector<Value> values;
     std::vector<std::uint8_t> state;  ///< 0 waiting, 1 under way, 2 done
+    std::vector<bool> own;            ///< depends on this derivation alone: not for AttributeMemo
     Shape shape;                      ///< what defaults are evaluated on; seed and draws are those of the slot at work
     Place* importer = nullptr;        ///< dynamic imports: where the call stands
     bool outside = true;
   };
   AttributePhase* phase_ = nullptr;
+  mutable bool own_ = false;  ///< the attribute that is evaluated read what is this derivation's own
   Surroundings* recorded_ = nullptr;
   const Surroundings* known_ = nullptr;
   std::vector<Link> lineages_;  ///< of every child and piece, while somebody asks for surroundings

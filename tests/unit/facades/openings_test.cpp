@@ -392,11 +392,42 @@ TEST(OpeningProof, FailsWhereABorderDoes) {
   EXPECT_EQ(judged(folded), std::pair(false, false));
 }
 
+/// What has passages is proved where the solid with these alone was found valid, and is refused as others are.
+TEST(OpeningProof, ReliesOnPassagesThatWereChecked) {
+  const Solid solid = house(turned(polygon({{0, 0}, {20, 0}, {20, 10}, {0, 10}})));
+  const auto walls = walls_of(solid);
+  const std::vector<WallOpening> passage{{0, OpeningKind::passage, rectangle(8, 0.1, 3, 3), 0, 0, 1},
+                                         {2, OpeningKind::passage, rectangle(9, 0.1, 3, 3), 0, 0, 0}};
+  const OpenedSolid alone = cut_openings(solid, walls, passage);
+  ASSERT_EQ(validity(alone.solid), "none");
+  ASSERT_TRUE(alone.changed_borders.empty());
+  std::vector<WallOpening> wanted = passage;
+  wanted.push_back(window(0, rectangle(4, 1, 1, 2)));
+  wanted.push_back(window(2, rectangle(4, 1, 1, 2)));
+  const OpenedSolid opened = cut_openings(solid, walls, wanted);
+  ASSERT_EQ(opened.openings.size(), 4u);
+  const auto triangles = *geometry::triangulate(opened.solid);
+  ASSERT_EQ(geometry::check_solid(opened.solid, triangles).text(), "none");
+  EXPECT_FALSE(proved_valid(opened, triangles)) << "nothing is known of the passage";
+  EXPECT_TRUE(proved_valid(opened, triangles, true));
+  // The window's corner in the portal, and out of the wall's plane.
+  const auto loops = opened.solid.loops_of(opened.solid.faces[walls[0].face]);
+  const std::uint32_t corner = opened.solid.indices_of(loops[2])[0];
+  for (const auto& [by, depth] : {std::pair(Point2{5, 0.5}, 0.0), std::pair(Point2{0, 0}, 0.05)}) {
+    OpenedSolid broken = opened;
+    Point3& p = broken.solid.vertices[corner];
+    const Point3 zero = walls[0].at({0, 0}), to = walls[0].at(by, depth);
+    p = model::snap(Point3{p.x + to.x - zero.x, p.y + to.y - zero.y, p.z + to.z - zero.z});
+    EXPECT_NE(geometry::check_solid(broken.solid, triangles).text(), "none");
+    EXPECT_FALSE(proved_valid(broken, triangles, true));
+  }
+}
+
 /// Random windows on random houses: what is cut is valid, whatever was asked.
 TEST(Openings, RandomHousesStayValid) {
   constexpr model::RoofShape kShapes[] = {model::RoofShape::flat, model::RoofShape::gabled, model::RoofShape::hipped,
                                           model::RoofShape::skillion, model::RoofShape::mansard};
-  int cut = 0, houses = 0, validated = 0, proved = 0, with_passage = 0;
+  int cut = 0, houses = 0, validated = 0, proved = 0, with_passage = 0, passages_checked = 0, proved_with_passage = 0;
   std::map<OpeningRefusal, int> refused;
   for (std::uint64_t number = 0; number < 800; ++number) {
     const Polygon plan = random_plan(77, number);
@@ -439,6 +470,21 @@ TEST(Openings, RandomHousesStayValid) {
                                          [](const model::Opening& o) { return o.kind == OpeningKind::passage; });
     with_passage += has_passage;
     proved += proved_valid(opened, *triangles);
+    if (has_passage) {
+      std::vector<WallOpening> passages;
+      for (const std::uint32_t i : opened.given) {
+        if (wanted[i].kind != OpeningKind::passage) continue;
+        passages.push_back(wanted[i]);  // portals follow each other
+        passages.back().through =
+            static_cast<std::uint32_t>(passages.size() % 2 == 1 ? passages.size() : passages.size() - 2);
+      }
+      const OpenedSolid alone = cut_openings(solid, walls, passages);
+      const auto its = geometry::triangulate(alone.solid);
+      if (alone.changed_borders.empty() && its && geometry::check_solid(alone.solid, *its, geometry::kBuilt).valid()) {
+        ++passages_checked;
+        proved_with_passage += proved_valid(opened, *triangles, true);
+      }
+    }
     if (number % 10 == 0) {
       ++validated;
       ASSERT_EQ(cgal_validity(opened.solid), "") << number;
@@ -453,6 +499,9 @@ TEST(Openings, RandomHousesStayValid) {
   std::printf("%d proved, %d with passages\n", proved, with_passage);
   EXPECT_GT(proved, (houses - with_passage) * 99 / 100);
   EXPECT_LE(proved, houses - with_passage);
+  std::printf("%d of %d with passages that were checked proved\n", proved_with_passage, passages_checked);
+  EXPECT_GT(proved_with_passage, passages_checked * 9 / 10);
+  EXPECT_GT(passages_checked, with_passage / 2);
   EXPECT_GT(houses, 600);
   EXPECT_GT(cut, 5000);
   for (int r = 0; r < kOpeningRefusalCount; ++r) EXPECT_GT(refused[static_cast<OpeningRefusal>(r)], 0) << r;

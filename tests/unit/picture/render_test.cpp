@@ -317,6 +317,12 @@ TEST(Render, TrianglesOfAPlaneAreOneFace) {
   ASSERT_EQ(both.faces().size(), 14u);
   EXPECT_EQ(both.faces()[both.triangles().back().face].object, 10u);
   EXPECT_EQ(both.faces()[both.triangles().front().face].object, 6u);
+  std::vector<bool> hidden(7, false);
+  hidden[6] = true;
+  Scene rest = scene;
+  rest.append_without(both, hidden);
+  EXPECT_EQ(rest.triangle_count(), 2 * scene.triangle_count());
+  EXPECT_EQ(rest.faces()[rest.triangles().back().face].object, 10u);
 }
 
 TEST(Palette, KeepsAreasAndFindsTheNearestOfOthers) {

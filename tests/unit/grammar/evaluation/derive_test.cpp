@@ -187,6 +187,45 @@ TEST(Attributes, ThatTheProgramGives) {
   EXPECT_THAT(places(d, "unknown_name"), ElementsAre("2:40"));
 }
 
+/// What derivations share changes nothing, and what is a derivation's own is not shared.
+TEST(Attributes, AreEvaluatedOnceForAllThatShareThem) {
+  const Program program = load_text(R"(
+attr storeys = building.storeys * 2
+attr wide = edge.length > 5
+attr tall = storeys > 3 && p(0.5)
+attr tone = case wide : "w" else : "n"
+attr drawn = rand(0, 1)
+attr lot = scope.sx
+@Consistent("building")
+const joinery = rand(0, 1)
+const of_others = storeys + joinery
+const bad = missing.name + 1
+twice(x) = x * storeys
+const called = twice(3)
+Lot --> print(storeys) print(wide) print(tall) print(tone) print(drawn) print(lot) print(joinery) print(of_others) print(bad) print(called) X.
+)");
+  AttributeMemo memo;
+  std::size_t asked = 0;
+  for (int wall = 0; wall < 6; ++wall) {
+    DeriveOptions options = seeded(static_cast<std::uint64_t>(wall));
+    options.building_seed = 7;
+    options.source = [&](std::string_view name) -> std::optional<Value> {
+      if (name == "building.storeys") return ++asked, Value(2.0);
+      if (name == "edge.length") return Value(static_cast<double>(wall * 2));
+      return std::nullopt;
+    };
+    const Derivation alone = derive(program, rectangle(3 + wall, 10), options);
+    asked = 0;
+    options.memo = &memo;
+    options.is_shared = [](std::string_view name) { return name.starts_with("building."); };
+    const Derivation shared = derive(program, rectangle(3 + wall, 10), options);
+    EXPECT_EQ(shared.prints, alone.prints) << wall;
+    EXPECT_EQ(shared.attributes, alone.attributes) << wall;
+    EXPECT_EQ(all_diagnostics(shared.diagnostics), all_diagnostics(alone.diagnostics)) << wall;
+    EXPECT_EQ(asked, wall == 0 ? 1u : 0u) << wall;
+  }
+}
+
 TEST(Functions, AreEvaluatedAtEachCallAndRecurse) {
   EXPECT_EQ(prints("f(n) = case n <= 0 : 0 else : 1 + f(n - 1)\nLot --> print(f(1000))"), "1000");
   EXPECT_EQ(prints("fib(n) = case n < 2 : n else : fib(n-1) + fib(n-2)\nLot --> print(fib(15))"), "610");
