@@ -253,10 +253,9 @@ void GltfFile::refuse_compression(const std::string& what) const {
 
 void GltfFile::check_extensions(NoteLog& notes) const {
   // What changes no geometry needs no reading.
-  constexpr std::array<std::string_view, 8> kRead{"KHR_mesh_quantization",   "EXT_mesh_gpu_instancing",
-                                                  "EXT_mesh_features",       "EXT_structural_metadata",
-                                                  "EXT_instance_features",   "KHR_texture_transform",
-                                                  "EXT_meshopt_compression", "KHR_meshopt_compression"};
+  constexpr std::array<std::string_view, 8> kRead{
+      "KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "EXT_mesh_features",       "EXT_structural_metadata",
+      "EXT_instance_features", "KHR_texture_transform",   "EXT_meshopt_compression", "KHR_meshopt_compression"};
   for (const Json& name : member(json_, "extensionsRequired")) {
     const std::string extension = text(name);
     if (extension == "KHR_draco_mesh_compression") refuse_compression("Draco (" + extension + ")");
@@ -323,7 +322,8 @@ void GltfFile::unpack_views() {
       std::string why;
       auto bytes = unpacked_view(packed, buffers_, why);
       if (!bytes)
-        throw base::InputError(path_, "", "has a bufferView " + std::to_string(number) + " that " + why + " (" + name + ")",
+        throw base::InputError(path_, "",
+                               "has a bufferView " + std::to_string(number) + " that " + why + " (" + name + ")",
                                "Decompress it first, for instance: npx @gltf-transform/cli copy IN OUT");
       view["byteLength"] = bytes->size();
       view["byteOffset"] = 0;

@@ -387,8 +387,7 @@ class Planner {
                        {p.at->along.x, p.at->along.y, dot(at, turn.out), dot(at, turn.along), p.at->origin.z + d.z},
                        p});
     }
-    std::stable_sort(keyed.begin(), keyed.end(),
-                     [](const Keyed& a, const Keyed& b) { return a.feature < b.feature; });
+    std::stable_sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) { return a.feature < b.feature; });
     for_each_run(
         std::span(keyed), [](const Keyed& a, const Keyed& b) { return a.feature == b.feature; },
         [](std::span<Keyed> run) { sort_by(run, 0); });
@@ -411,8 +410,7 @@ class Planner {
 
   /// By the key with that number; those that hardly differ in it by the next.
   static void sort_by(std::span<Keyed> all, std::size_t key) {
-    std::stable_sort(all.begin(), all.end(),
-                     [&](const Keyed& a, const Keyed& b) { return a.keys[key] < b.keys[key]; });
+    std::stable_sort(all.begin(), all.end(), [&](const Keyed& a, const Keyed& b) { return a.keys[key] < b.keys[key]; });
     if (key + 1 == std::tuple_size_v<decltype(Keyed::keys)>) return;
     const double same = key < 2 ? kSameDirection : kSameColumn;
     for_each_run(

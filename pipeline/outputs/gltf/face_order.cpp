@@ -22,7 +22,11 @@ struct Triangle {
 class FaceOrder {
  public:
   FaceOrder(std::span<const FaceCorner> corners, double column)
-      : corners_(corners), gap_(column), along_(corners.size()), column_(corners.size()), seen_(corners.size(), false) {}
+      : corners_(corners),
+        gap_(column),
+        along_(corners.size()),
+        column_(corners.size()),
+        seen_(corners.size(), false) {}
 
   /// Appends the triangles of a face. \param list  their indices
   void add(std::span<const std::uint16_t> list, std::vector<std::uint16_t>& out) {
@@ -59,9 +63,8 @@ class FaceOrder {
       const auto& s = corners_[i].steps;
       along_[i] = static_cast<double>(s[0]) * east + static_cast<double>(s[1]) * north;
     }
-    std::sort(used_.begin(), used_.end(), [&](std::uint16_t a, std::uint16_t b) {
-      return std::pair(along_[a], a) < std::pair(along_[b], b);
-    });
+    std::sort(used_.begin(), used_.end(),
+              [&](std::uint16_t a, std::uint16_t b) { return std::pair(along_[a], a) < std::pair(along_[b], b); });
     std::uint32_t column = 0;
     for (std::size_t k = 0; k < used_.size(); ++k) {
       if (k > 0 && along_[used_[k]] - along_[used_[k - 1]] > gap_) ++column;

@@ -146,8 +146,8 @@ class MeshWriter {
         values.push_back(value);
       }
     }
-    return add<float>(far_ ? Stream::far_positions : Stream::tile_positions, values, Component::float32, "VEC3", p, false,
-                      bounds);
+    return add<float>(far_ ? Stream::far_positions : Stream::tile_positions, values, Component::float32, "VEC3", p,
+                      false, bounds);
   }
 
   int add_normals(const MeshPrimitive& p) {

@@ -397,8 +397,8 @@ GltfMaker packed(const GltfMaker& plain) {
     out.json["bufferViews"][i]["buffer"] = 1;
     out.json["bufferViews"][i]["byteOffset"] = unpacked;
     out.json["bufferViews"][i]["extensions"]["EXT_meshopt_compression"] = {
-        {"buffer", 0},     {"byteOffset", binary.size()}, {"byteLength", coded.size()},
-        {"count", count}, {"byteStride", stride},         {"mode", indices ? "TRIANGLES" : "ATTRIBUTES"}};
+        {"buffer", 0},    {"byteOffset", binary.size()}, {"byteLength", coded.size()},
+        {"count", count}, {"byteStride", stride},        {"mode", indices ? "TRIANGLES" : "ATTRIBUTES"}};
     binary.append(coded.begin(), coded.end());
     unpacked += (bytes.size() + 7) / 8 * 8;
   }
