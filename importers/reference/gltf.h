@@ -32,7 +32,7 @@ namespace blockrand::importers::reference {
 /// Read: node transforms, EXT_mesh_gpu_instancing, KHR_mesh_quantization, sparse accessors, triangle strips and fans.
 /// Left out: points and lines, animations, skins, morph targets.
 ///
-/// \throws base::InputError  when there is no such file, it is damaged, not glTF 2.0, compressed by Draco or meshopt,
+/// \throws base::InputError  when there is no such file, it is damaged, not glTF 2.0, compressed by Draco,
 /// of
 ///         3D Tiles 1.0's own formats, or nothing says where on the Earth it lies
 /// \throws base::UsageError  when `reference_crs` is no projected CRS in metres

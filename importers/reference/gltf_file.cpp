@@ -11,6 +11,7 @@
 
 #include "importers/reference/file_bytes.h"
 #include "importers/reference/matrix4.h"
+#include "importers/reference/meshopt_views.h"
 #include "pipeline/base/error.h"
 
 namespace blockrand::importers::reference {
@@ -22,6 +23,9 @@ namespace fs = std::filesystem;
 
 /// Values of an accessor that no buffer stands behind: more are a mistake or an attack.
 constexpr std::size_t kMostWithoutBytes = 10'000'000;
+
+/// Extensions of a packed buffer view: the ratified name and the vendors'.
+constexpr std::array<const char*, 2> kMeshopt{"EXT_meshopt_compression", "KHR_meshopt_compression"};
 
 std::uint32_t word_at(std::string_view bytes, std::size_t at) {
   std::uint32_t out = 0;
@@ -213,6 +217,7 @@ GltfFile::GltfFile(const std::string& path, NoteLog& notes)
     throw base::InputError(path, "", "is glTF " + version, "Version 2.0 is read; gltf-pipeline converts it");
   check_extensions(notes);
   read_buffers(std::move(binary));
+  unpack_views();
 }
 
 void GltfFile::read_container(std::string& bytes, std::string& json, std::string& binary) const {
@@ -248,13 +253,12 @@ void GltfFile::refuse_compression(const std::string& what) const {
 
 void GltfFile::check_extensions(NoteLog& notes) const {
   // What changes no geometry needs no reading.
-  constexpr std::array<std::string_view, 6> kRead{"KHR_mesh_quantization", "EXT_mesh_gpu_instancing",
-                                                  "EXT_mesh_features",     "EXT_structural_metadata",
-                                                  "EXT_instance_features", "KHR_texture_transform"};
+  constexpr std::array<std::string_view, 8> kRead{
+      "KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "EXT_mesh_features",       "EXT_structural_metadata",
+      "EXT_instance_features", "KHR_texture_transform",   "EXT_meshopt_compression", "KHR_meshopt_compression"};
   for (const Json& name : member(json_, "extensionsRequired")) {
     const std::string extension = text(name);
     if (extension == "KHR_draco_mesh_compression") refuse_compression("Draco (" + extension + ")");
-    if (extension.find("meshopt_compression") != std::string::npos) refuse_compression("meshopt (" + extension + ")");
     const bool looks = extension.starts_with("KHR_materials") || extension.starts_with("KHR_texture") ||
                        extension.starts_with("EXT_texture") || extension.starts_with("KHR_lights");
     if (!looks && std::find(kRead.begin(), kRead.end(), extension) == kRead.end())
@@ -277,8 +281,14 @@ void GltfFile::read_buffers(std::string binary) {
     const std::string uri = text(member(buffer, "uri"));
     std::string bytes;
     if (uri.empty()) {
-      for (const auto& [name, extension] : member(buffer, "extensions").items())
-        if (name.find("meshopt_compression") != std::string::npos) refuse_compression("meshopt (" + name + ")");
+      // A stand-in for what unpack_views() makes.
+      const bool packed = std::any_of(kMeshopt.begin(), kMeshopt.end(), [&](const char* name) {
+        return member(member(buffer, "extensions"), name).is_object();
+      });
+      if (!first && packed) {
+        buffers_.emplace_back();
+        continue;
+      }
       if (!first) throw base::InputError(path_, "", "has a buffer without bytes", "");
       bytes = std::move(binary);
     } else if (uri.starts_with("data:")) {
@@ -299,6 +309,29 @@ void GltfFile::read_buffers(std::string binary) {
     }
     first = false;
     buffers_.push_back(std::move(bytes));
+  }
+}
+
+void GltfFile::unpack_views() {
+  if (!member(json_, "bufferViews").is_array()) return;
+  std::size_t number = 0;
+  for (Json& view : json_["bufferViews"]) {
+    for (const char* name : kMeshopt) {
+      const Json& packed = member(member(view, "extensions"), name);
+      if (!packed.is_object()) continue;
+      std::string why;
+      auto bytes = unpacked_view(packed, buffers_, why);
+      if (!bytes)
+        throw base::InputError(path_, "",
+                               "has a bufferView " + std::to_string(number) + " that " + why + " (" + name + ")",
+                               "Decompress it first, for instance: npx @gltf-transform/cli copy IN OUT");
+      view["byteLength"] = bytes->size();
+      view["byteOffset"] = 0;
+      view["buffer"] = buffers_.size();
+      buffers_.push_back(std::move(*bytes));
+      break;
+    }
+    ++number;
   }
 }
 

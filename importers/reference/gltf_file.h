@@ -29,10 +29,9 @@ struct AccessorValues {
 
 class GltfFile {
  public:
-  /// Reads `.glb` and `.gltf`, also gzipped, with all buffers.
+  /// Reads `.glb` and `.gltf`, also gzipped, with all buffers; what meshopt packed is unpacked.
   /// \throws base::InputError  when it is damaged, not glTF 2.0, a buffer is missing, or geometry is compressed in a
-  /// way
-  ///         that is not read (Draco, meshopt)
+  ///         way that is not read (Draco)
   GltfFile(const std::string& path, NoteLog& notes);
 
   const Json& json() const { return json_; }
@@ -53,6 +52,7 @@ class GltfFile {
   void read_container(std::string& bytes, std::string& json, std::string& binary) const;
   void check_extensions(NoteLog& notes) const;
   void read_buffers(std::string binary);
+  void unpack_views();
   bool fill(const Json& view_number, std::size_t offset, int component_type, std::size_t components, std::size_t stride,
             std::size_t count, bool normalized, std::vector<double>& out);
 

@@ -155,6 +155,8 @@ std::string build_report(const run::BuildOptions& options, const run::BuildSumma
   std::size_t width = 0;
   for (const auto& [path, what] : places) width = std::max(width, path.size());
   for (const auto& [path, what] : places) text += fmt::format("  {:<{}}  {}\n", path, width, what);
+  if (options.outputs.writes("gltf") && options.outputs.compression != outputs::Compression::none)
+    text += "tiles are compressed by meshopt; for programs that cannot read that: --compress none\n";
   if (options.outputs.explain)
     text += fmt::format("why a building looks as it does: blockrand explain {} w123\n", for_shell(folder));
   return text + fmt::format("to look at it: blockrand view {}\n", for_shell(folder));

@@ -56,7 +56,8 @@ const base::Choices<Objects> kObjects = {{"building", Objects::building}, {"tile
 const base::Choices<AttributeProfile> kProfiles = {{"people", AttributeProfile::people},
                                                    {"all", AttributeProfile::all}};
 
-const base::Choices<Compression> kCompressions = {{"none", Compression::none}, {"meshopt", Compression::meshopt}};
+const base::Choices<Compression> kCompressions = {
+    {"tiles", Compression::tiles}, {"none", Compression::none}, {"meshopt", Compression::meshopt}};
 
 const base::Choices<CityGmlDetail> kDetails = {{"lean", CityGmlDetail::lean}, {"full", CityGmlDetail::full}};
 
@@ -90,8 +91,8 @@ base::OptionTable<O> which_files() {
       choice({.name = "compress",
               .key = "compress",
               .argument = "HOW",
-              .help = "how GLBs are compressed: none, or meshopt (EXT_meshopt_compression), a third of the size, "
-                      "for viewers that can decompress it",
+              .help = "which GLBs are compressed by meshopt (EXT_meshopt_compression), to a fourth of their size: "
+                      "tiles, but not model.glb; none, for programs that cannot read it (Blender, QGIS); meshopt, all",
               .record = OptionRecord::yes,
               .record_place = 8},
              kCompressions, &O::compression),

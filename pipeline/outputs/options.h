@@ -26,7 +26,7 @@ enum class CityGmlDetail : std::uint8_t {
 struct OutputOptions {
   std::vector<std::string> formats = format_names();    ///< in the order of format_names
   Instancing instancing = Instancing::ext;              ///< how GLBs hold what stands in facades
-  Compression compression = Compression::none;          ///< of vertices, indices and places in GLBs
+  Compression compression = Compression::tiles;         ///< of vertices, indices and places in GLBs
   AttributeProfile profile = AttributeProfile::people;  ///< what GLBs tell of a building
   std::int64_t max_glb_bytes = 10'000'000;              ///< of a tile's GLB: a larger one is cut; 0: none is
   CityGmlDetail citygml_detail = CityGmlDetail::lean;   ///< of LoD3

@@ -1,4 +1,6 @@
 """Readers of what a build wrote, in plain Python: enough of CityGML, GLB and 3D Tiles to ask where things stand."""
+import ctypes
+import ctypes.util
 import gzip
 import json
 import os
@@ -45,6 +47,34 @@ def attributes(element):
 
 # ---- GLB
 
+MESHOPT = 'EXT_meshopt_compression'
+
+
+def unpack_views(glb, binary):
+    """The binary chunk with the buffer views that meshopt packed unpacked behind it; `glb` names the new places. By the library
+    that programs link."""
+    library = None
+    for view in glb.get('bufferViews', []):
+        packed = view.get('extensions', {}).pop(MESHOPT, None)
+        if packed is None:
+            continue
+        library = library or ctypes.CDLL(ctypes.util.find_library('meshoptimizer'))
+        size, count, start = packed['byteStride'], packed['count'], packed.get('byteOffset', 0)
+        source = binary[start:start + packed['byteLength']]
+        target = ctypes.create_string_buffer(size * count)
+        decode = {'ATTRIBUTES': library.meshopt_decodeVertexBuffer, 'TRIANGLES': library.meshopt_decodeIndexBuffer}[packed['mode']]
+        arguments = (target, ctypes.c_size_t(count), ctypes.c_size_t(size), source, ctypes.c_size_t(len(source)))
+        assert decode(*arguments) == 0, view
+        filtered = packed.get('filter', 'NONE')
+        if filtered != 'NONE':
+            assert filtered == 'EXPONENTIAL', filtered
+            library.meshopt_decodeFilterExp(*arguments[:3])
+        binary += bytes(-len(binary) % 8)
+        view.update(buffer=0, byteOffset=len(binary))
+        binary += target.raw
+    return binary
+
+
 class Glb:
     """A GLB with its first property table."""
     FORMATS = {5120: ('b', 127), 5121: ('B', 255), 5122: ('h', 32767), 5123: ('H', 65535), 5125: ('I', 1), 5126: ('f', 1)}
@@ -65,6 +95,7 @@ class Glb:
             elif kind == b'BIN\0':
                 self.bin = chunk
             at += 8 + size
+        self.bin = unpack_views(self.json, self.bin)
 
     def accessor(self, index):
         a = self.json['accessors'][index]

@@ -27,7 +27,7 @@ class Damages(Validated):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.out = cls().build(SAMPLE, 'out', '--formats', 'gltf,citygml,cityjson,gpkg')
+        cls.out = cls().build(SAMPLE, 'out', '--formats', 'gltf,citygml,cityjson,gpkg', '--compress', 'none')
         cls.number = 0
 
     def damaged(self):

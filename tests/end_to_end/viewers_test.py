@@ -327,7 +327,7 @@ class ByAssimp(BuildTest):
         super().setUpClass()
         if not shutil.which('assimp'):
             raise unittest.SkipTest('assimp is not installed (package assimp-utils)')
-        cls.out = cls().build(SAMPLE, 'out', '--formats', 'gltf', '--no-report', '--no-explain', '--single-glb')
+        cls.out = cls().build(SAMPLE, 'out', '--formats', 'gltf', '--no-report', '--no-explain', '--single-glb', '--compress', 'none')
         cls.files = [os.path.join(cls.out, f) for f in files_of(cls.out, '.glb')]
 
     def test_counts_and_extent(self):

@@ -214,9 +214,9 @@ def seed_build(seeds, name, out):
 def seed_builds(seeds, program, extracts, folder):
     """Builds in several ways, so that every kind of file is there."""
     for extract, way, options in [
-            ("garage", "lod1", ["--lod", "1"]), ("garage", "lod3", ["--lod", "3", "--single-glb"]),
+            ("garage", "lod1", ["--lod", "1"]), ("garage", "lod3", ["--lod", "3", "--single-glb", "--compress", "none"]),
             ("garage", "meshopt", ["--lod", "3", "--compress", "meshopt"]),
-            ("garage", "nodes", ["--lod", "3", "--instancing", "nodes", "--evidence"]),
+            ("garage", "nodes", ["--lod", "3", "--instancing", "nodes", "--evidence", "--compress", "none"]),
             ("church", "lod2", ["--lod", "2", "--single-cityjson"]), ("school", "lod2", ["--lod", "2", "--evidence"])]:
         path = folder / f"{extract}.osm"
         path.write_bytes(extracts[extract])

@@ -9,6 +9,7 @@ namespace blockrand::outputs {
 enum class Compression : std::uint8_t {
   none,
   meshopt,  ///< EXT_meshopt_compression (required by the file); lossless, but for the first corner of a triangle
+  tiles,    ///< the same in the tiles of a tileset; model.glb is for programs that cannot read it
 };
 
 }  // namespace blockrand::outputs

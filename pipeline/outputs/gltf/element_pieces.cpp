@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <unordered_map>
@@ -33,6 +34,9 @@ constexpr std::size_t kFewestWhole = 16, kTrialStep = 4;
 
 /// The cosine of 4 degrees, by which a scaled shape may be shaded otherwise.
 constexpr double kNormalCosine = 0.9976;
+
+/// Of places on one wall: components of unit vectors, and m along it or out of it. Frames and grids leave that much.
+constexpr double kSameDirection = 1e-3, kSameColumn = 0.01;
 
 constexpr double kFlat = 1e-6;  ///< m; and of unit vectors
 
@@ -377,27 +381,45 @@ class Planner {
 
   /// Windows above each other follow each other: a place then differs from the one before in its height alone.
   static void sort_places(std::vector<PlacedPiece::Place>& places) {
-    struct Keyed {
-      std::uint32_t feature;
-      double east, north;
-      std::int64_t along, out, up;  // mm
-      PlacedPiece::Place place;
-    };
     std::vector<Keyed> keyed;
     keyed.reserve(places.size());
     for (const PlacedPiece::Place& p : places) {
       const PieceTurn turn(p.at->along);
       const Point3 d = turn(p.middle);
       const model::Point2 at{p.at->origin.x + d.x, p.at->origin.y + d.y};
-      const auto mm = [](double v) { return static_cast<std::int64_t>(std::nearbyint(v * 1000)); };
-      keyed.push_back({p.at->feature, p.at->along.x, p.at->along.y, mm(dot(at, turn.along)), mm(dot(at, turn.out)),
-                       mm(p.at->origin.z + d.z), p});
+      keyed.push_back({p.at->feature,
+                       {p.at->along.x, p.at->along.y, dot(at, turn.out), dot(at, turn.along), p.at->origin.z + d.z},
+                       p});
     }
-    std::stable_sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
-      return std::tie(a.feature, a.east, a.north, a.along, a.out, a.up) <
-             std::tie(b.feature, b.east, b.north, b.along, b.out, b.up);
-    });
+    std::stable_sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) { return a.feature < b.feature; });
+    for_each_run(
+        std::span(keyed), [](const Keyed& a, const Keyed& b) { return a.feature == b.feature; },
+        [](std::span<Keyed> run) { sort_by(run, 0); });
     for (std::size_t i = 0; i < places.size(); ++i) places[i] = keyed[i].place;
+  }
+
+  struct Keyed {
+    std::uint32_t feature;
+    std::array<double, 5> keys;  ///< direction (east, north), distance of its wall, along the wall, up
+    PlacedPiece::Place place;
+  };
+
+  template <class Together, class Visit>
+  static void for_each_run(std::span<Keyed> all, const Together& together, const Visit& visit) {
+    for (std::size_t begin = 0, end = 1; begin < all.size(); begin = end++) {
+      while (end < all.size() && together(all[end - 1], all[end])) ++end;
+      visit(all.subspan(begin, end - begin));
+    }
+  }
+
+  /// By the key with that number; those that hardly differ in it by the next.
+  static void sort_by(std::span<Keyed> all, std::size_t key) {
+    std::stable_sort(all.begin(), all.end(), [&](const Keyed& a, const Keyed& b) { return a.keys[key] < b.keys[key]; });
+    if (key + 1 == std::tuple_size_v<decltype(Keyed::keys)>) return;
+    const double same = key < 2 ? kSameDirection : kSameColumn;
+    for_each_run(
+        all, [&](const Keyed& a, const Keyed& b) { return b.keys[key] - a.keys[key] <= same; },
+        [&](std::span<Keyed> run) { sort_by(run, key + 1); });
   }
 
   const std::vector<InstanceGroup>& groups_;

@@ -26,6 +26,8 @@ StreamInfo info_of(Stream stream) {
   switch (stream) {
     case Stream::positions:
       return {12, true, MeshoptCoding::steps};
+    case Stream::tile_positions:
+      return {12, true, MeshoptCoding::tile_steps};
     case Stream::far_positions:
       return {12, true, MeshoptCoding::attributes};
     case Stream::normals:

@@ -22,6 +22,7 @@ namespace blockrand::outputs {
 /// Bytes of one kind, which share a buffer view.
 enum class Stream : std::uint8_t {
   positions,               ///< 3 floats, multiples of 1/4096
+  tile_positions,          ///< 3 floats, multiples of 1/2048
   far_positions,           ///< 3 floats of a mesh that is too wide for that
   normals,                 ///< 3 signed bytes and an empty one
   colours,                 ///< 4 words
@@ -53,9 +54,13 @@ struct GlbAccessor {
   std::optional<std::array<std::array<double, 3>, 2>> bounds = std::nullopt;
 };
 
-/// Positions count in these steps: 1/4096 m. The model's own grid of 1/1024 m costs up to 0.69 mm in plan; with 0.17 mm
-/// more a corner still lies within 1 mm of its place.
+/// Positions of objects (model.glb) count in these steps: 1/4096 m. The model's own grid of 1/1024 m costs up to 0.69 mm
+/// in plan; with 0.17 mm more a corner still lies within 1 mm of its place.
 inline constexpr double kGlbStepsPerMetre = 4096;
+/// Those of tiles, and of what is placed in them: 1/2048 m. A corner lies up to 0.42 mm from where the model has it, 0.35
+/// in plan. Finer steps are noise that packs badly: 1/4096 takes 3 % more bytes and 6 % more when gzipped, 1/1024, which
+/// would cost the millimetre, 5 and 4 % less.
+inline constexpr double kTileStepsPerMetre = 2048;
 /// m. Farther from the origin a float, or a compressed number of 24 bits, no longer holds a step.
 inline constexpr double kFinestReach = 2047;
 

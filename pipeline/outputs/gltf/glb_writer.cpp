@@ -10,6 +10,7 @@
 
 #include "pipeline/outputs/gltf/building_table.h"
 #include "pipeline/outputs/gltf/element_pieces.h"
+#include "pipeline/outputs/gltf/face_order.h"
 #include "pipeline/outputs/gltf/glb_document.h"
 #include "pipeline/outputs/gltf/linear_light.h"
 #include "pipeline/outputs/gltf/material.h"
@@ -33,6 +34,9 @@ constexpr std::string_view kPiecesName = "elements";
 /// Of placed shapes in one file, each a draw call: a bound for odd tiles. In towns what a draw is worth (element_pieces.cpp) ends it before.
 constexpr std::size_t kMostShapes = 400;
 
+/// Steps; 1 cm: vertices above each other lean by less than that, and windows are wider.
+constexpr double kColumn = kTileStepsPerMetre / 100;
+
 /// Appends vertices and the accessors of the primitives to a document.
 class MeshWriter {
  public:
@@ -45,16 +49,19 @@ class MeshWriter {
   /// A node of the solids, and one of the pieces of elements, by whose name readers know them apart.
   /// \param material  for which `table` tells where classes are \return how many triangles it wrote
   std::size_t write(int material, const MaterialTable& table) {
-    return write(mesh_.primitives, "", material, table) + write(mesh_.pieces, kPiecesName, material, table);
+    return write(mesh_.primitives, "", material, table, Order::along_faces) +
+           write(mesh_.pieces, kPiecesName, material, table, Order::vertex_cache);
   }
 
  private:
+  enum class Order : std::uint8_t { along_faces, vertex_cache };
+
   std::size_t write(const std::vector<MeshPrimitive>& primitives, std::string_view name, int material,
-                    const MaterialTable& table) {
+                    const MaterialTable& table, Order order) {
     std::string json = "{\"primitives\":[";
     std::size_t triangles = 0;
     for (const MeshPrimitive& all : primitives) {
-      const MeshPrimitive p = packed(all);
+      const MeshPrimitive p = packed(all, order);
       if (p.indices.empty()) continue;
       triangles += p.indices.size() / 3;
       if (json.back() == '}') json += ',';
@@ -92,17 +99,19 @@ class MeshWriter {
 
   /// \return the primitive without triangles that have no area once their corners are whole steps, in the order in which
   /// it packs best
-  MeshPrimitive packed(const MeshPrimitive& p) const {
+  MeshPrimitive packed(const MeshPrimitive& p, Order order) const {
     using Steps = std::array<std::int64_t, 3>;
-    std::vector<Steps> steps;
+    std::vector<FaceCorner> corners;
+    corners.reserve(p.vertices.size());
     for (const MeshVertex& v : p.vertices) {
       const model::Point3& enu = mesh_.positions[v.position];
-      const auto whole = [](double x) { return static_cast<std::int64_t>(std::nearbyint(x * kGlbStepsPerMetre)); };
-      steps.push_back({whole(enu.x), whole(enu.y), whole(enu.z)});
+      const auto whole = [](double x) { return static_cast<std::int64_t>(std::nearbyint(x * kTileStepsPerMetre)); };
+      corners.push_back({{whole(enu.x), whole(enu.y), whole(enu.z)}, v.normal});
     }
     MeshPrimitive out;
     for (std::size_t t = 0; t + 2 < p.indices.size(); t += 3) {
-      const Steps &a = steps[p.indices[t]], &b = steps[p.indices[t + 1]], &c = steps[p.indices[t + 2]];
+      const Steps &a = corners[p.indices[t]].steps, &b = corners[p.indices[t + 1]].steps,
+                  &c = corners[p.indices[t + 2]].steps;
       const auto cross = [&](std::size_t i, std::size_t k) {
         return (b[i] - a[i]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[i] - a[i]);
       };
@@ -110,7 +119,9 @@ class MeshWriter {
       out.indices.insert(out.indices.end(), p.indices.begin() + static_cast<std::ptrdiff_t>(t),
                          p.indices.begin() + static_cast<std::ptrdiff_t>(t + 3));
     }
-    const std::vector<std::uint32_t> numbers = packing_order(out.indices, p.vertices.size());
+    const std::vector<std::uint32_t> numbers = order == Order::along_faces
+                                                   ? order_along_faces(out.indices, corners, kColumn)
+                                                   : packing_order(out.indices, p.vertices.size());
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       if (numbers[i] == ~0u) continue;
       if (numbers[i] >= out.vertices.size()) out.vertices.resize(numbers[i] + 1);
@@ -127,7 +138,7 @@ class MeshWriter {
       const model::Point3& enu = mesh_.positions[v.position];
       const std::array<double, 3> xyz = y_up(enu.x, enu.y, enu.z);
       for (std::size_t i = 0; i < 3; ++i) {
-        const double stored = far_ ? xyz[i] : std::nearbyint(xyz[i] * kGlbStepsPerMetre) / kGlbStepsPerMetre;
+        const double stored = far_ ? xyz[i] : std::nearbyint(xyz[i] * kTileStepsPerMetre) / kTileStepsPerMetre;
         const float value = static_cast<float>(stored) + 0.0f;  // no -0
         const bool first = values.size() < 3;
         bounds[0][i] = first ? value : std::min<double>(bounds[0][i], value);
@@ -135,8 +146,8 @@ class MeshWriter {
         values.push_back(value);
       }
     }
-    return add<float>(far_ ? Stream::far_positions : Stream::positions, values, Component::float32, "VEC3", p, false,
-                      bounds);
+    return add<float>(far_ ? Stream::far_positions : Stream::tile_positions, values, Component::float32, "VEC3", p,
+                      false, bounds);
   }
 
   int add_normals(const MeshPrimitive& p) {
@@ -237,9 +248,17 @@ nlohmann::json georeference(const GlbOptions& options) {
 
 nlohmann::ordered_json metadata(GlbDocument& document, const PropertyTable& table) {
   using Object = nlohmann::ordered_json;
-  Object building_class = {{"name", "Building part"}, {"properties", table.class_properties()}};
+  Object properties = table.class_properties();
+  nlohmann::json enums = nlohmann::json::object(), known = building_enums();
+  known.update(table.text_enums());
+  for (const auto& [name, property] : properties.items())
+    if (const auto type = property.find("enumType"); type != property.end()) {
+      const std::string enumeration = type->get<std::string>();
+      enums[enumeration] = known.at(enumeration);
+    }
+  Object building_class = {{"name", "Building part"}, {"properties", std::move(properties)}};
   Object schema = {{"classes", {{kBuildingClass, std::move(building_class)}}},
-                   {"enums", building_enums()},
+                   {"enums", std::move(enums)},
                    {"id", "blockrand"},
                    {"version", "1.0.0"}};
   return {{"propertyTables", Object::array({table.write(document, kBuildingClass)})}, {"schema", std::move(schema)}};
@@ -286,7 +305,8 @@ void write_batch(GlbDocument& document, const model::Region& region, const GlbOp
 }  // namespace
 
 Glb write_glb(const model::Region& region, const GlbOptions& options) {
-  const PropertyTable table = building_table(region, options.profile, options.evidence);
+  PropertyTable table = building_table(region, options.profile, options.evidence);
+  table.code_texts();
   if (table.rows() > (1u << 24)) throw std::length_error("too many building parts for one GLB");
 
   GlbDocument document;

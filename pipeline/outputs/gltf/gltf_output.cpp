@@ -57,7 +57,8 @@ GlbOptions glb_options(const OutputContext& context, const georef::EnuFrame& fra
   GlbOptions o;
   o.lod = context.lod;
   o.instancing = context.options.instancing;
-  o.compression = context.options.compression;
+  o.compression =
+      context.options.compression == Compression::tiles ? Compression::meshopt : context.options.compression;
   o.crs = context.crs.authority_code;
   o.height_reference = context.heights.in_tiles;
   o.generator = generator();
@@ -232,6 +233,7 @@ void write_model(const FinishedBuild& build, const OutputContext& context) {
   const georef::EnuFrame frame({context.centre.lon, context.centre.lat, origin_height + plane.at});
   GlbOptions o = glb_options(context, frame);
   o.objects = context.options.objects;
+  if (context.options.compression == Compression::tiles) o.compression = Compression::none;
   // One frame for a whole city: every point takes the exact way, and the geoid is asked for each.
   o.frame.to_enu = [&](std::span<const Point3> in, std::span<Point3> out) {
     for (std::size_t i = 0; i < in.size(); ++i) {

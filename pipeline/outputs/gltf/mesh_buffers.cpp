@@ -13,6 +13,7 @@
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/model/vector.h"
 #include "pipeline/outputs/gltf/element_geometry.h"
+#include "pipeline/outputs/gltf/glb_document.h"
 #include "pipeline/outputs/gltf/point_numbers.h"
 #include "pipeline/outputs/placed_element.h"
 
@@ -211,7 +212,14 @@ void bake_element(const model::ColouredElement& element, const ElementGeometry& 
   }
 }
 
-/// Puts the triangles of a piece into the mesh, wherever it stands.
+/// In whole steps of a tile.
+model::Point3 on_tile_grid(const model::Point3& p) {
+  const auto snap = [](double v) { return std::nearbyint(v * kTileStepsPerMetre) / kTileStepsPerMetre; };
+  return {snap(p.x), snap(p.y), snap(p.z)};
+}
+
+/// Puts the triangles of a piece into the mesh, wherever it stands. Place and corner are rounded one by one: all copies
+/// on a wall have the same steps from corner to corner, which gzip finds. A corner lies up to 0.85 mm from its place.
 void bake_piece(const BakedPiece& baked, Mesh& mesh, Primitives& primitives) {
   const Piece& piece = baked.piece;
   for (const ElementInstance& at : *baked.places) {
@@ -222,7 +230,7 @@ void bake_piece(const BakedPiece& baked, Mesh& mesh, Primitives& primitives) {
       const model::Point3 n = turn(v.normal);
       MeshVertex vertex;
       vertex.position = static_cast<std::uint32_t>(mesh.positions.size());
-      mesh.positions.push_back(at.origin + turn(piece.middle + v.position));
+      mesh.positions.push_back(on_tile_grid(at.origin) + on_tile_grid(turn(piece.middle + v.position)));
       vertex.feature = at.feature;
       vertex.look = v.look;
       const auto quantise = [](double c) { return static_cast<std::int8_t>(std::nearbyint(c * 127)); };

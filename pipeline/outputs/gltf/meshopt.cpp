@@ -38,6 +38,8 @@ int exponent_of(MeshoptCoding coding) {
   switch (coding) {
     case MeshoptCoding::steps:
       return -12;
+    case MeshoptCoding::tile_steps:
+      return -11;
     case MeshoptCoding::scales:
       return -17;
     case MeshoptCoding::whole:

@@ -13,6 +13,7 @@ namespace blockrand::outputs {
 enum class MeshoptCoding : std::uint8_t {
   attributes,  ///< mode ATTRIBUTES: bytes of neighbouring elements resemble each other
   steps,       ///< ATTRIBUTES with the filter EXPONENTIAL: floats that are multiples of 1/4096 below 2048
+  tile_steps,  ///< the same with multiples of 1/2048 below 4096
   whole,       ///< the same with floats that are whole numbers below 2^23
   scales,      ///< the same with floats that are multiples of 2^-17 below 64
   triangles,   ///< mode TRIANGLES: indices; the same triangles, turned or not

@@ -17,7 +17,7 @@ namespace {
 
 using model::Point3;
 
-constexpr double kPlaceSteps = kGlbStepsPerMetre;
+constexpr double kPlaceSteps = kTileStepsPerMetre;
 constexpr double kCube = 16384;       ///< half the edge of the cube that upright shapes fill
 constexpr double kMostSteps = 32767;  ///< of a 16-bit position
 constexpr double kScaleSteps = 131072;

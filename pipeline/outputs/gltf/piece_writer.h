@@ -13,7 +13,7 @@ namespace blockrand::outputs {
 class GlbDocument;
 
 /// Adds a node for each placed shape of the plan (EXT_mesh_gpu_instancing, EXT_instance_features), below one whose scale
-/// turns steps of 1/4096 m into metres. Places are whole steps; positions of shapes are 16-bit integers.
+/// turns steps of 1/2048 m into metres. Places are whole steps; positions of shapes are 16-bit integers.
 ///
 /// Shapes whose faces lie along the axes fill one cube, whatever their size, and share the accessors of their vertices;
 /// the others have their own. \param groups  of which the plan is: their boxes give the figures

@@ -20,6 +20,12 @@ namespace {
 using Kind = PropertyTable::Kind;
 using Object = nlohmann::ordered_json;
 
+/// The value that stands for an absent text in an enumeration of texts, and its name there.
+constexpr std::uint8_t kAbsentText = 255;
+constexpr std::string_view kAbsentTextName = "none";
+/// Bytes of JSON around the name of a value, and around an enumeration.
+constexpr std::size_t kEntryBytes = 23, kEnumBytes = 80;
+
 std::size_t element_size(Kind kind) {
   switch (kind) {
     case Kind::int64:
@@ -108,6 +114,64 @@ void PropertyTable::end_row() {
     }
     data.set = false;
   }
+}
+
+void PropertyTable::code_texts() {
+  for (Data& data : columns_) {
+    if (data.column.kind != Kind::text || !data.any) continue;
+    std::map<std::string_view, std::uint8_t> values;
+    std::size_t names = 0;
+    bool fits = true, absent = false;
+    const auto text = [&](std::size_t row) {
+      return std::string_view(data.bytes).substr(data.offsets[row], data.offsets[row + 1] - data.offsets[row]);
+    };
+    for (std::size_t row = 0; row < rows_ && fits; ++row) {
+      absent = absent || text(row).empty();
+      if (!text(row).empty() && values.try_emplace(text(row)).second) names += text(row).size() + kEntryBytes;
+      fits = values.size() < kAbsentText;
+    }
+    const std::size_t width = data.offsets.back() <= 0xFFFF ? 2 : 4;
+    if (!fits || values.contains(kAbsentTextName) ||
+        names + kEnumBytes + rows_ >= data.bytes.size() + width * data.offsets.size())
+      continue;
+    std::uint8_t next = 0;
+    for (auto& [name, value] : values) {
+      value = next++;
+      data.names.emplace_back(name);
+    }
+    std::string bytes;
+    for (std::size_t row = 0; row < rows_; ++row)
+      bytes += static_cast<char>(text(row).empty() ? kAbsentText : values.at(text(row)));
+    data.bytes = std::move(bytes);
+    data.offsets.clear();
+    data.column.kind = Kind::enumeration;
+    data.column.enum_type = data.column.name;
+    if (absent) {
+      data.column.no_data = kAbsentText;
+      data.column.no_data_name = kAbsentTextName;
+    }
+  }
+}
+
+nlohmann::json PropertyTable::text_enums() const {
+  nlohmann::json out = nlohmann::json::object();
+  for (const Data& data : columns_) {
+    if (data.names.empty()) continue;
+    nlohmann::json values = nlohmann::json::array();
+    const auto add = [&](const std::string& name, std::size_t value) {
+      nlohmann::json entry;
+      entry.emplace("name", name);
+      entry.emplace("value", value);
+      values.push_back(std::move(entry));
+    };
+    for (std::size_t i = 0; i < data.names.size(); ++i) add(data.names[i], i);
+    if (!data.column.no_data_name.empty()) add(data.column.no_data_name, kAbsentText);
+    nlohmann::json enumeration;
+    enumeration.emplace("valueType", "UINT8");
+    enumeration.emplace("values", std::move(values));
+    out.emplace(data.column.enum_type, std::move(enumeration));
+  }
+  return out;
 }
 
 std::vector<const PropertyTable::Data*> PropertyTable::listed() const {

@@ -48,8 +48,14 @@ class PropertyTable {
 
   std::uint32_t rows() const { return rows_; }
 
+  /// Texts that repeat become enumerations where that is shorter, of the column's name: a byte for each row, each text
+  /// once. Call it when all rows are there.
+  void code_texts();
+
   /// The "properties" of the class.
   nlohmann::ordered_json class_properties() const;
+  /// What code_texts() made, by name.
+  nlohmann::json text_enums() const;
   /// The table, its columns added to `document` as buffer views.
   nlohmann::ordered_json write(GlbDocument& document, const std::string& class_name) const;
 
@@ -60,6 +66,7 @@ class PropertyTable {
     std::vector<std::uint32_t> offsets;  ///< of texts
     bool any = false;                    ///< some row has a value
     bool set = false;                    ///< in the row being filled
+    std::vector<std::string> names;      ///< of a coded text, by value; `bytes` are values then
   };
   void put(Data& data, const void* value, std::size_t size);
   /// The columns in the order of files.

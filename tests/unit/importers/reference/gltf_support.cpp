@@ -52,7 +52,7 @@ nlohmann::json GltfMaker::texts(const std::vector<std::string>& values) {
 
 std::string GltfMaker::glb() const {
   nlohmann::json whole = json;
-  if (!binary.empty()) whole["buffers"] = {{{"byteLength", binary.size()}}};
+  if (!binary.empty()) whole["buffers"][0] = {{"byteLength", binary.size()}};
   return glb_of(whole.dump(), binary);
 }
 

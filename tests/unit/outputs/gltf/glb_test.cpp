@@ -83,7 +83,7 @@ TEST(Glb, PositionsCountInSteps) {
   GlbOptions o = options();
   const Glb glb = write_glb(s.region(), o);
   const nlohmann::json json = document(glb.bytes);
-  constexpr double step = 1.0 / 4096;
+  constexpr double step = 1.0 / 2048;
   EXPECT_FALSE(json["nodes"][0].contains("scale"));
   const GlbFile file = validators::read_glb_bytes(glb.bytes);
   EXPECT_TRUE(test::closed(triangles(file.features.at(0))));
@@ -291,6 +291,28 @@ TEST(Glb, NoDataPropertiesAreLeftOut) {
   EXPECT_FALSE(extension["propertyTables"][0]["properties"].contains("roof_direction"));
   EXPECT_TRUE(extension["schema"]["classes"]["building_part"]["properties"].contains("roof_direction"));
   for (const auto& view : json["bufferViews"]) EXPECT_EQ(view.value("byteOffset", 0) % 8, 0);
+}
+
+/// Texts that repeat are written once: a column of bytes, and an enumeration of its name.
+TEST(Glb, TextsThatRepeatAreEnumerations) {
+  const SampleRegion many = SampleRegion::settlement(400, false);
+  GlbOptions o = options();
+  o.profile = AttributeProfile::people;
+  const std::string bytes = write_glb(many.region(), o).bytes;
+  const nlohmann::json json = document(bytes);
+  const auto& schema = json["extensions"]["EXT_structural_metadata"]["schema"];
+  const auto& properties = schema["classes"]["building_part"]["properties"];
+  EXPECT_EQ(properties["sources"]["type"], "ENUM");
+  EXPECT_EQ(properties["sources"]["enumType"], "sources");
+  EXPECT_EQ(properties["id"]["type"], "STRING") << "they are all different";
+  std::set<std::string> used;
+  for (const auto& [name, property] : properties.items())
+    if (property.contains("enumType")) used.insert(property["enumType"]);
+  for (const auto& [name, enumeration] : schema["enums"].items()) EXPECT_TRUE(used.contains(name)) << name;
+  EXPECT_EQ(schema["enums"].size(), used.size());
+  const GlbFile file = validators::read_glb_bytes(bytes);
+  for (const auto& f : file.features) EXPECT_THAT(f.texts.at("sources"), testing::HasSubstr(": "));
+  EXPECT_EQ(file.features.at(7).texts.count("name"), 0u) << "absent texts stay absent";
 }
 
 TEST(Glb, TheSameBytesTwice) {
