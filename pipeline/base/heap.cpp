@@ -10,9 +10,10 @@ extern "C" int mallctl(const char* name, void* old, std::size_t* old_size, void*
     __attribute__((weak));
 
 // Read by jemalloc as it starts (its manual, section TUNING). Huge pages: a build touches its memory once, mostly, and a page fault for each
-// 4 KB was a tenth of its time. 5 to 10 MB more at the peak.
+// 4 KB was a tenth of its time. What is free goes back after half a
+// second: else they cost 40 MB at the peak.
 extern "C" const char* malloc_conf;
-const char* malloc_conf = "thp:always";
+const char* malloc_conf = "thp:always,dirty_decay_ms:500,muzzy_decay_ms:0";
 
 namespace blockrand::base {
 
