@@ -116,9 +116,16 @@ class Glb:
         return [tuple(a * b for a, b in zip(value[:3], factor)) for value in values]
 
     def texts(self, name):
-        """A STRING column of the property table."""
+        """A STRING column of the property table, or an ENUM of a byte."""
         table = self.json['extensions']['EXT_structural_metadata']['propertyTables'][0]
         column = table['properties'][name]
+        if 'stringOffsets' not in column:
+            schema = self.json['extensions']['EXT_structural_metadata']['schema']
+            kind = schema['classes'][table['class']]['properties'][name]
+            names = {v['value']: v['name'] for v in schema['enums'][kind['enumType']]['values']}
+            start = self.json['bufferViews'][column['values']].get('byteOffset', 0)
+            found = [names[v] for v in self.bin[start:start + table['count']]]
+            return ['' if n == kind.get('noData') else n for n in found]
         values, offsets = (self.json['bufferViews'][column[k]] for k in ('values', 'stringOffsets'))
         code = self.OFFSETS[column.get('stringOffsetType', 'UINT32')]
         ends = struct.unpack_from(f'<{table["count"] + 1}{code}', self.bin, offsets.get('byteOffset', 0))
