@@ -3,12 +3,20 @@
 //
 //   facts_table EXTRACT CONFIGS OUT.csv           features and tags; needs no weights
 //   facts_table EXTRACT CONFIGS OUT.csv answers   and what is answered; with `quick` behind it without hiding by tenths
+//   facts_table EXTRACT CONFIGS OUT.csv conditions   and what is answered under the three conditions of cities.py
+//
+// Conditions, each of which hides storeys, roofs and dates (with building:architecture) together:
+//   hidden   those of all buildings
+//   tenths   those of a tenth of the buildings at a time (by a hash of the id), which is asked then
+//   quarter  those of all buildings within 500 m of seeded points, which stand 1.5 km apart; the rest stays visible
 //
 // Hiding: a tenth of the buildings at a time (by a hash of the id) loses its tag, and is asked then; `_alone` columns
 // are answers where every tag of the kind is hidden.
 #include <fmt/format.h>
 #include <fmt/os.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -47,6 +55,58 @@ int part_of(model::OsmId id) {
 }
 
 std::string number(float v) { return v == v ? fmt::format("{:.5g}", v) : std::string(); }
+
+constexpr double kQuarter = 500;          ///< m around a seeded point, all hidden
+constexpr double kBetweenQuarters = 1500;  ///< m; no quarter hears of the next one
+
+std::uint64_t hash_of(model::OsmId id) {
+  std::uint64_t h = id.number * 4u + static_cast<std::uint64_t>(id.type);
+  h = (h ^ (h >> 33)) * 0xff51afd7ed558ccdull;
+  h = (h ^ (h >> 29)) * 0xc4ceb9fe1a85ec53ull;
+  return h ^ (h >> 32);
+}
+
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+
+/// Takes away what a building tells of storeys, roof and date. \returns  whether it told any
+bool hide_all(evidence::FactsExtract& f, evidence::TagFacts& t, std::uint32_t b) {
+  bool any = t.roofs[b].has_value() || t.years[b].has_value();
+  for (const Feature feature : {Feature::tag_storeys, Feature::tag_roof, Feature::tag_roof_storeys, Feature::tag_year}) {
+    any = any || f.features[b].has(feature);
+    f.features[b][feature] = kUnknown;
+  }
+  t.roofs[b].reset();
+  t.dates[b] = {};
+  t.years[b].reset();
+  return any;
+}
+
+/// Who lies within 500 m of the seeded points: buildings that tell something, in the order of a hash of their ids.
+std::vector<std::uint8_t> in_quarters(const evidence::FactsExtract& facts, const evidence::TagFacts& tags,
+                                      const footprints::FootprintStore& store) {
+  evidence::FactsExtract f = facts;
+  evidence::TagFacts t = tags;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> telling;
+  for (std::uint32_t b = 0; b < store.size(); ++b)
+    if (facts.features[b].has(Feature::area) && hide_all(f, t, b)) telling.emplace_back(hash_of(store[b].id), b);
+  std::sort(telling.begin(), telling.end());
+  const auto away = [&](std::uint32_t a, std::uint32_t b) {
+    return std::hypot(facts.places[a].place.x - facts.places[b].place.x, facts.places[a].place.y - facts.places[b].place.y);
+  };
+  std::vector<std::uint32_t> points;
+  for (const auto& [hash, b] : telling)
+    if (std::none_of(points.begin(), points.end(), [&](std::uint32_t p) { return away(p, b) < kBetweenQuarters; }))
+      points.push_back(b);
+  std::vector<std::uint8_t> out(store.size(), 0);
+  for (std::uint32_t b = 0; b < store.size(); ++b)
+    for (const std::uint32_t p : points)
+      if (away(p, b) <= kQuarter) out[b] = 1;
+  return out;
+}
+
+struct Conditions {
+  evidence::StyleExtract tagged, hidden, tenths, quarter;
+};
 
 struct Answers {
   evidence::StyleExtract tagged, untagged, no_region, no_smooth, permuted, era, storeys, storeys_alone, roof,
@@ -90,7 +150,7 @@ void in_tenths(
 }
 
 void write_table(const std::string& input, const std::string& configs, const std::string& table, bool answers,
-                 bool quick) {
+                 bool quick, bool conditions) {
   base::Progress progress;
   const model::Extract extract = importers::osm::read_extract(input, {});
   const auto area = footprints::area_of(extract);
@@ -107,7 +167,7 @@ void write_table(const std::string& input, const std::string& configs, const std
   const context::VicinityFinder vicinity(extract, store, context);
   evidence::FactsExtract facts =
       evidence::facts_extract(extract, store, repaired.first, context, vicinity, kWorkers, progress);
-  classify::Tables tables = answers ? classify::Tables::read(configs) : classify::Tables::read_without_weights(configs);
+  classify::Tables tables = answers || conditions ? classify::Tables::read(configs) : classify::Tables::read_without_weights(configs);
   const evidence::TagFacts tags = evidence::tag_facts(extract, store, context, tables, projection, facts);
 
   Answers a;
@@ -130,7 +190,6 @@ void write_table(const std::string& input, const std::string& configs, const std
     a.era.styles.resize(n);
     a.storeys_alone.storeys.resize(n);
     a.roof_alone.roofs.resize(n);
-    constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
     const auto hide_storeys = [&](evidence::FactsExtract& f, evidence::TagFacts&, std::uint32_t b) {
       const bool any = f.features[b].has(Feature::tag_storeys);
       f.features[b][Feature::tag_storeys] = kUnknown;
@@ -167,7 +226,36 @@ void write_table(const std::string& input, const std::string& configs, const std
     }
   }
 
-  constexpr std::string_view kTags[] = {"building", "start_date", "building:architecture", "name"};
+  Conditions c;
+  std::vector<std::uint8_t> quarter;
+  if (conditions) {
+    const auto rules = attributes::read_rule_sets(configs, "");
+    const evidence::PriorOf prior = evidence::prior_by_place(extract, store, rules.book, tables);
+    const auto again = [&](const evidence::FactsExtract& f, const evidence::TagFacts& t) {
+      return evidence::classify_extract(f, t, tables, prior, {}, kWorkers, progress);
+    };
+    c.tagged = again(facts, tags);
+    c.tenths = c.tagged;
+    in_tenths(
+        facts, tags, store, hide_all,
+        [&](const auto& r, std::uint32_t b) {
+          c.tenths.styles[b] = r.styles[b];
+          c.tenths.storeys[b] = r.storeys[b];
+          c.tenths.roofs[b] = r.roofs[b];
+        },
+        again);
+    evidence::FactsExtract f = facts;
+    evidence::TagFacts t = tags;
+    quarter = in_quarters(facts, tags, store);
+    for (std::uint32_t b = 0; b < store.size(); ++b)
+      if (quarter[b]) hide_all(f, t, b);
+    c.quarter = again(f, t);
+    for (std::uint32_t b = 0; b < store.size(); ++b) hide_all(f, t, b);
+    c.hidden = again(f, t);
+  }
+
+  constexpr std::string_view kTags[] = {"building", "start_date", "building:architecture", "name", "heritage", "historic",
+                                        "wikidata", "wikipedia", "architect"};
   auto out = fmt::output_file(table);
   std::string head =
       "id,x,y,lon,lat,block,street,house,parts,storeys,height,roof_shape,year,year_confidence,years_from,years_to,non_"
@@ -176,20 +264,30 @@ void write_table(const std::string& input, const std::string& configs, const std
   for (const auto& f : classify::kFeatures) head += fmt::format(",{}", f.name);
   if (answers) {
     for (const char* set : {"tagged", "untagged", "noregion", "nosmooth", "permuted", "hidden"}) {
-      for (const auto c : model::kStyleClassNames) head += fmt::format(",{}_style_{}", set, c);
-      for (const auto c : model::kEraNames) head += fmt::format(",{}_era_{}", set, c);
-      for (const auto c : model::kMorphologyNames) head += fmt::format(",{}_morphology_{}", set, c);
+      for (const auto name : model::kStyleClassNames) head += fmt::format(",{}_style_{}", set, name);
+      for (const auto name : model::kEraNames) head += fmt::format(",{}_era_{}", set, name);
+      for (const auto name : model::kMorphologyNames) head += fmt::format(",{}_morphology_{}", set, name);
       head += fmt::format(",{}_substyle", set);
     }
     head +=
         ",storeys_hidden,storeys_hidden_p,storeys_votes,storeys_alone,storeys_alone_p,roof_hidden,roof_hidden_p,roof_"
         "alone";
   }
+  if (conditions) {
+    head += ",in_quarter";
+    for (const char* set : {"tagged", "hidden", "tenths", "quarter"}) {
+      for (const auto name : model::kStyleClassNames) head += fmt::format(",{}_style_{}", set, name);
+      for (const auto name : model::kEraNames) head += fmt::format(",{}_era_{}", set, name);
+      for (const auto name : model::kMorphologyNames) head += fmt::format(",{}_morphology_{}", set, name);
+      for (const char* name : {"substyle", "substyle_p", "non_house", "storeys", "storeys_p", "storeys_within", "roof", "roof_p"})
+        head += fmt::format(",{}_{}", set, name);
+    }
+  }
   out.print("{}\n", head);
   const auto clean = [](std::string_view text) {
-    std::string c;
-    for (const char ch : text) c += ch == ',' || ch == '"' || ch == '\n' || ch == '\r' ? ' ' : ch;
-    return c;
+    std::string out_text;
+    for (const char ch : text) out_text += ch == ',' || ch == '"' || ch == '\n' || ch == '\r' ? ' ' : ch;
+    return out_text;
   };
   std::uint32_t n = 0;
   for (const footprints::Shard& shard : shards)
@@ -200,8 +298,8 @@ void write_table(const std::string& input, const std::string& configs, const std
       const evidence::BuildingPlace& p = facts.places[b];
       const model::Location l = footprints::box_centre(extract, m);
       std::string touching;
-      for (const evidence::Contact& c : facts.contacts_of(b))
-        touching += (touching.empty() ? "" : " ") + store[c.other].id.text() + ":" + fmt::format("{:.1f}", c.length);
+      for (const evidence::Contact& contact : facts.contacts_of(b))
+        touching += (touching.empty() ? "" : " ") + store[contact.other].id.text() + ":" + fmt::format("{:.1f}", contact.length);
       const auto optional = [](const auto& v) { return v ? fmt::format("{:g}", *v) : std::string(); };
       std::string row = fmt::format(
           "{},{:.1f},{:.1f},{:.6f},{:.6f},{},{:x},{},{},{},{},{},{},{},{},{},{},{}", m.id.text(), p.place.x, p.place.y,
@@ -229,6 +327,20 @@ void write_table(const std::string& input, const std::string& configs, const std
                            classify::name(classify::family_of(a.roof.roofs[b].shape)), a.roof.roofs[b].confidence,
                            classify::name(classify::family_of(a.roof_alone.roofs[b].shape)));
       }
+      if (conditions) {
+        row += fmt::format(",{}", quarter[b]);
+        for (const evidence::StyleExtract* set : {&c.tagged, &c.hidden, &c.tenths, &c.quarter}) {
+          const model::BuildingStyle& s = set->styles[b];
+          for (const float v : s.style) row += "," + number(v);
+          for (const float v : s.era) row += "," + number(v);
+          for (const float v : s.morphology) row += "," + number(v);
+          const evidence::StoreysEstimate& storeys = set->storeys[b];
+          const evidence::RoofEstimate& roof = set->roofs[b];
+          row += fmt::format(",{},{:.3f},{},{:g},{:.3f},{:.3f},{},{:.3f}", tables.catalogue[s.substyle].id, s.substyle_p,
+                             s.non_house ? 1 : 0, storeys.storeys, storeys.confidence, storeys.within_one,
+                             classify::name(classify::family_of(roof.shape)), roof.confidence);
+        }
+      }
       out.print("{}\n", row);
     }
 }
@@ -237,13 +349,14 @@ void write_table(const std::string& input, const std::string& configs, const std
 
 int main(int argc, char** argv) {
   const bool answers = argc >= 5 && std::string(argv[4]) == "answers",
-             quick = argc == 6 && std::string(argv[5]) == "quick";
-  if (argc != 4 && !(answers && (argc == 5 || quick))) {
-    std::fputs("usage: facts_table EXTRACT CONFIGS OUT.csv [answers [quick]]\n", stderr);
+             quick = argc == 6 && std::string(argv[5]) == "quick",
+             conditions = argc == 5 && std::string(argv[4]) == "conditions";
+  if (argc != 4 && !conditions && !(answers && (argc == 5 || quick))) {
+    std::fputs("usage: facts_table EXTRACT CONFIGS OUT.csv [answers [quick] | conditions]\n", stderr);
     return 1;
   }
   try {
-    write_table(argv[1], argv[2], argv[3], answers, quick);
+    write_table(argv[1], argv[2], argv[3], answers, quick, conditions);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s\n", e.what());
     return 2;
