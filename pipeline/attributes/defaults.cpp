@@ -62,6 +62,12 @@ void read_use(TomlTable& table, UseDefaults& use, const Defaults& defaults) {
   }
   if (const auto v = table.number("storeys", 0.5, 150)) use.storeys = *v;
   if (const auto v = table.number("storey_height", 1.5, 60)) use.storey_height = *v;
+  if (const auto v = table.boolean("hall")) use.hall = *v;
+  if (const auto v = table.number("eaves_per_width", 0, 5)) use.eaves_per_width = *v;
+  if (const auto v = table.number("lowest_eaves", 1, 60)) use.lowest_eaves = *v;
+  if (const auto v = table.number("highest_eaves", 1, 60)) use.highest_eaves = *v;
+  if (use.lowest_eaves > use.highest_eaves)
+    table.fail("lowest_eaves", "the lowest eaves are above the highest", "Give lowest_eaves <= highest_eaves");
   if (const auto v = table.number("roof_pitch", 1, 80)) use.roof_pitch = *v;
   if (const auto v = table.number("pitched_width", 1, 200)) use.pitched_width = *v;
   if (const auto shape = table.text("roof_shape")) {

@@ -21,6 +21,9 @@ struct UseDefaults {
   std::uint8_t group = 0;  ///< index into Defaults::groups
   double storeys = 2;
   double storey_height = 3.0;
+  bool hall = false;           ///< one room up to the roof: what neighbours have in storeys says nothing of it
+  double eaves_per_width = 0;  ///< of halls: eaves over the plan's equivalent width; 0: storey_height alone counts
+  double lowest_eaves = 0, highest_eaves = 60;  ///< m, of eaves that follow the width
   model::RoofShape roof_shape = model::RoofShape::flat;
   double roof_pitch = 38;
   double pitched_width = 17;  ///< wider plans get a flat roof

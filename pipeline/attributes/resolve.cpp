@@ -51,6 +51,21 @@ const UseDefaults& with_style(const Building& building, const ResolveInputs& in,
   return storage;
 }
 
+/// m. Lower no storey of a church or hall is where storeys are tagged.
+constexpr double kLowestHallStorey = 3;
+
+/// Eaves of halls follow the width of their plan. \param storage  holds the measures
+const UseDefaults& with_hall(const UseDefaults& usual, const MappedAttributes& mapped,
+                             const std::vector<model::Polygon>& plans, UseDefaults& storage) {
+  if (!usual.hall || usual.eaves_per_width <= 0 || plans.empty()) return usual;
+  const double eaves = std::clamp(usual.eaves_per_width * geometry::equivalent_width(plans[0]), usual.lowest_eaves,
+                                  usual.highest_eaves);
+  const double counted = mapped.storeys ? std::max(1.0, static_cast<double>(*mapped.storeys)) : usual.storeys;
+  if (&usual != &storage) storage = usual;
+  storage.storey_height = std::max(kLowestHallStorey, eaves / counted);
+  return storage;
+}
+
 std::string ground_reason(Source source) {
   if (source == Source::terrain) return "lowest terrain under the outline";
   if (source == Source::override_) return "one ground height for all, as given";
@@ -84,7 +99,10 @@ Sourced<double> Resolver::storeys() {
     choices.push_back({std::max(1.0, std::floor((seen.value - usual.plinth) / usual.storey_height + 0.5)), seen.source,
                        static_cast<double>(seen.confidence),
                        fmt::format("{}, of {:g} m a storey", seen.why, usual.storey_height)});
-  if (const auto& inferred_candidate = building.inferred.storeys; inferred_candidate.confidence > 0)
+  // A nave has one storey whatever stands around it.
+  if (usual.hall)
+    choices.push_back({usual.storeys, usual_source(), kGeometryConfidence, "one hall, " + usual_name()});
+  else if (const auto& inferred_candidate = building.inferred.storeys; inferred_candidate.confidence > 0)
     choices.push_back({static_cast<double>(inferred_candidate.value), inferred_candidate.source,
                        static_cast<double>(inferred_candidate.confidence), inferred_candidate.why});
   else if (const auto vote = in.neighbours.storeys(place(), group, id, options.neighbour_minimum);
@@ -176,9 +194,12 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
     const double area = area_of(building.outline);
     // An outline of a few square metres that says nothing but `yes` is no house.
     const bool small = use == "yes" && !building.outline.empty() && area < in.defaults.small_area;
-    UseDefaults styled, changed;
+    UseDefaults styled, changed, hall;
     const UseDefaults& usual = with_overrides(
-        entry_of_building, with_style(building, in, small ? in.defaults.small : in.defaults.use(use), styled), changed);
+        entry_of_building,
+        with_hall(with_style(building, in, small ? in.defaults.small : in.defaults.use(use), styled), building.mapped,
+                  building.outline, hall),
+        changed);
     const std::uint8_t group = neighbour_group(in.defaults, use, area);
 
     std::vector<model::ReportRow> conflicts;
@@ -210,10 +231,13 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
       const std::string_view part_use = use_text(part.mapped);
       // building:part=yes says nothing; a use of its own does.
       const bool own_use = own_tags && in.defaults.uses.contains(part_use) && part_use != "yes";
-      UseDefaults part_styled, part_changed;
+      UseDefaults part_styled, part_changed, part_hall;
       const UseDefaults& part_usual = with_overrides(
           own_tags && in.overrides ? in.overrides->find(part.osm) : nullptr,
-          own_use ? with_style(building, in, in.defaults.use(part_use), part_styled) : usual, part_changed);
+          own_use ? with_hall(with_style(building, in, in.defaults.use(part_use), part_styled), part.mapped,
+                              {part.roof_plan}, part_hall)
+                  : usual,
+          part_changed);
       const std::vector<model::Polygon> plan{part.roof_plan};
       Resolver r{.region = region,
                  .in = in,
