@@ -9,9 +9,9 @@
 extern "C" int mallctl(const char* name, void* old, std::size_t* old_size, void* given, std::size_t given_size)
     __attribute__((weak));
 
-// Read by jemalloc as it starts (its manual, section TUNING). Huge pages: a build touches its memory once, mostly, and a page fault for each
-// 4 KB was a tenth of its time. What is free goes back after half a
-// second: else they cost 40 MB at the peak.
+// Read by jemalloc as it starts (its manual, section TUNING). Huge pages: a build touches its memory once, mostly, and a
+// page fault for each 4 KB was a tenth of its time. What is free goes back after half a second: else they cost 40 MB at
+// the peak.
 extern "C" const char* malloc_conf;
 const char* malloc_conf = "thp:always,dirty_decay_ms:500,muzzy_decay_ms:0";
 

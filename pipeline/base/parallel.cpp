@@ -57,8 +57,8 @@ thread_local Loop* loop_of_thread = nullptr;
 class Loop {
  public:
   Loop(std::size_t count, std::size_t in_flight, const std::function<void(std::size_t)>& work,
-       const std::function<void(std::size_t)>& consume)
-      : end_(count), in_flight_(in_flight), done_(in_flight), work_(work), consume_(consume) {}
+       const std::function<void(std::size_t)>& consume, const ItemLoad& load)
+      : end_(count), in_flight_(in_flight), done_(in_flight), work_(work), consume_(consume), load_(load) {}
 
   /// What every thread does until there is nothing left to start or to consume.
   void run() {
@@ -74,9 +74,11 @@ class Loop {
         consuming_ = false;
         if (i < end_) ++consumed_;
         changed_.notify_all();
-      } else if (started_ < end_ && started_ < consumed_ + in_flight_) {
+      } else if (started_ < end_ && started_ < consumed_ + in_flight_ && is_light_enough(started_)) {
         const std::size_t i = started_++;
+        ++running_, running_load_ += load_of(i);
         call(lock, work_, i);
+        --running_, running_load_ -= load_of(i);
         if (i < end_) done_[i % in_flight_] = true;
         changed_.notify_all();
       } else if (Shared* const shared = shared_work()) {
@@ -115,6 +117,9 @@ class Loop {
   }
 
  private:
+  std::size_t load_of(std::size_t i) const { return load_.of ? load_.of(i) : 0; }
+  bool is_light_enough(std::size_t i) const { return running_ == 0 || running_load_ + load_of(i) <= load_.most; }
+
   Shared* shared_work() const {
     // The newest first: what was shared within another's work holds that up.
     for (auto s = shared_.rbegin(); s != shared_.rend(); ++s)
@@ -143,11 +148,13 @@ class Loop {
   std::condition_variable changed_;
   std::size_t end_;  ///< nothing from here on is started or consumed
   std::size_t in_flight_, started_ = 0, consumed_ = 0;
+  std::size_t running_ = 0, running_load_ = 0;  ///< items that are worked on
   bool consuming_ = false;
   std::vector<char> done_;  ///< item i, while in flight, at i % in_flight_
   std::exception_ptr error_;
   const std::function<void(std::size_t)>& work_;
   const std::function<void(std::size_t)>& consume_;
+  const ItemLoad& load_;
   std::vector<Shared*> shared_;  ///< in the order in which they were begun
   std::size_t waiting_ = 0;      ///< threads that have nothing to do
 };
@@ -163,7 +170,8 @@ int worker_count(int jobs) {
 }
 
 void ordered_parallel(std::size_t count, int workers, std::size_t in_flight,
-                      const std::function<void(std::size_t)>& work, const std::function<void(std::size_t)>& consume) {
+                      const std::function<void(std::size_t)>& work, const std::function<void(std::size_t)>& consume,
+                      const ItemLoad& load) {
   if (count == 0) return;
   in_flight = std::clamp<std::size_t>(in_flight, 1, count);
   if (workers <= 1) {
@@ -173,7 +181,7 @@ void ordered_parallel(std::size_t count, int workers, std::size_t in_flight,
     }
     return;
   }
-  Loop loop(count, in_flight, work, consume);
+  Loop loop(count, in_flight, work, consume, load);
   std::vector<std::thread> threads;
   const std::size_t helpers = static_cast<std::size_t>(workers) - 1;
   threads.reserve(helpers);

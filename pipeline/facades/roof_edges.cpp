@@ -274,7 +274,12 @@ class RoofDresser {
     }
     roofs::BuiltOverhangs beyond = roofs::overhangs(plan, roof, rooms, over);
     take(std::move(beyond.elements), RoofElementKind::eaves);
-    if (has_caps(looks)) take(roofs::ridge_and_hip_caps(roof, beyond.corners, taken), RoofElementKind::ridge_cap);
+    if (has_caps(looks)) {
+      roofs::CapOptions caps;
+      caps.profile =
+          roofs::CapProfile::triangular;  // a third of the faces of a half-round one, and the same from the street
+      take(roofs::ridge_and_hip_caps(roof, beyond.corners, taken, caps), RoofElementKind::ridge_cap);
+    }
 
     for (model::RoofInstallation& made : bodies) {
       auto triangles = geometry::triangulate(made.solid);

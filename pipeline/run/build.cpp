@@ -182,6 +182,9 @@ void note_tile(WorkCache& cache, const std::string& tile, const TileKey& key, st
   cache.note_parts(tile, parts);
 }
 
+/// Buildings that an area works on at a time at LoD3, where tiles have as many: they take 0.4 MB each, with all of their elements.
+constexpr std::size_t kMostBuildingsAtATime = 200;
+
 /// A tile of the build.
 struct TileToTell {
   model::TileId tile;
@@ -545,7 +548,12 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
     done += told_shards[todo[i].place].seeds.size();
     progress.advance_to(done);
   };
-  base::ordered_parallel(todo.size(), workers, in_flight, work, consume);
+  // In an area, whose memory is bounded, large tiles at LoD3 are worked on one after the other, by all threads.
+  base::ItemLoad load;
+  if (record.area && options.lod >= 3)
+    load = {[&](std::size_t i) { return todo[i].shard ? shards[*todo[i].shard].seeds.size() : 0; },
+            kMostBuildingsAtATime};
+  base::ordered_parallel(todo.size(), workers, in_flight, work, consume, load);
   sums.settle(record);
   warn_of_terrain(inputs, progress);
   account.close(area ? std::nullopt : tile, shards, looked_into, summary);

@@ -197,6 +197,35 @@ TEST(Share, OutsideOfALoopTheCallerDoesAll) {
   EXPECT_EQ(sharing_threads(), 1u);
 }
 
+TEST(ItemLoads, HeavyItemsAreWorkedOnAlone) {
+  constexpr std::size_t kMost = 5;
+  const auto weight = [](std::size_t i) { return i % 4 == 0 ? std::size_t{9} : i % 3 + 1; };
+  std::mutex mutex;
+  std::size_t running = 0, load = 0, heaviest = 0, helped = 0;
+  std::vector<std::size_t> order;
+  ordered_parallel(
+      200, 4, 8,
+      [&](std::size_t i) {
+        {
+          const std::scoped_lock lock(mutex);
+          ++running, load += weight(i);
+          if (running > 1) heaviest = std::max(heaviest, load);
+        }
+        share(3, [&](std::size_t k) {
+          jitter(i + k);
+          const std::scoped_lock lock(mutex);
+          ++helped;
+        });
+        const std::scoped_lock lock(mutex);
+        --running, load -= weight(i);
+      },
+      [&](std::size_t i) { order.push_back(i); }, {weight, kMost});
+  EXPECT_LE(heaviest, kMost);
+  EXPECT_EQ(helped, 600u);
+  ASSERT_EQ(order.size(), 200u);
+  EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
+}
+
 TEST(WorkerCount, ZeroMeansOnePerCore) {
   EXPECT_GE(worker_count(0), 1);
   EXPECT_EQ(worker_count(3), 3);
