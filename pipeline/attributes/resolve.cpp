@@ -58,8 +58,8 @@ constexpr double kLowestHallStorey = 3;
 const UseDefaults& with_hall(const UseDefaults& usual, const MappedAttributes& mapped,
                              const std::vector<model::Polygon>& plans, UseDefaults& storage) {
   if (!usual.hall || usual.eaves_per_width <= 0 || plans.empty()) return usual;
-  const double eaves = std::clamp(usual.eaves_per_width * geometry::equivalent_width(plans[0]), usual.lowest_eaves,
-                                  usual.highest_eaves);
+  const double eaves =
+      std::clamp(usual.eaves_per_width * geometry::equivalent_width(plans[0]), usual.lowest_eaves, usual.highest_eaves);
   const double counted = mapped.storeys ? std::max(1.0, static_cast<double>(*mapped.storeys)) : usual.storeys;
   if (&usual != &storage) storage = usual;
   storage.storey_height = std::max(kLowestHallStorey, eaves / counted);
@@ -195,11 +195,11 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
     // An outline of a few square metres that says nothing but `yes` is no house.
     const bool small = use == "yes" && !building.outline.empty() && area < in.defaults.small_area;
     UseDefaults styled, changed, hall;
-    const UseDefaults& usual = with_overrides(
-        entry_of_building,
-        with_hall(with_style(building, in, small ? in.defaults.small : in.defaults.use(use), styled), building.mapped,
-                  building.outline, hall),
-        changed);
+    const UseDefaults& usual =
+        with_overrides(entry_of_building,
+                       with_hall(with_style(building, in, small ? in.defaults.small : in.defaults.use(use), styled),
+                                 building.mapped, building.outline, hall),
+                       changed);
     const std::uint8_t group = neighbour_group(in.defaults, use, area);
 
     std::vector<model::ReportRow> conflicts;
@@ -232,12 +232,12 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
       // building:part=yes says nothing; a use of its own does.
       const bool own_use = own_tags && in.defaults.uses.contains(part_use) && part_use != "yes";
       UseDefaults part_styled, part_changed, part_hall;
-      const UseDefaults& part_usual = with_overrides(
-          own_tags && in.overrides ? in.overrides->find(part.osm) : nullptr,
-          own_use ? with_hall(with_style(building, in, in.defaults.use(part_use), part_styled), part.mapped,
-                              {part.roof_plan}, part_hall)
-                  : usual,
-          part_changed);
+      const UseDefaults& part_usual =
+          with_overrides(own_tags && in.overrides ? in.overrides->find(part.osm) : nullptr,
+                         own_use ? with_hall(with_style(building, in, in.defaults.use(part_use), part_styled),
+                                             part.mapped, {part.roof_plan}, part_hall)
+                                 : usual,
+                         part_changed);
       const std::vector<model::Polygon> plan{part.roof_plan};
       Resolver r{.region = region,
                  .in = in,

@@ -56,7 +56,7 @@ int part_of(model::OsmId id) {
 
 std::string number(float v) { return v == v ? fmt::format("{:.5g}", v) : std::string(); }
 
-constexpr double kQuarter = 500;          ///< m around a seeded point, all hidden
+constexpr double kQuarter = 500;           ///< m around a seeded point, all hidden
 constexpr double kBetweenQuarters = 1500;  ///< m; no quarter hears of the next one
 
 std::uint64_t hash_of(model::OsmId id) {
@@ -71,7 +71,8 @@ constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 /// Takes away what a building tells of storeys, roof and date. \returns  whether it told any
 bool hide_all(evidence::FactsExtract& f, evidence::TagFacts& t, std::uint32_t b) {
   bool any = t.roofs[b].has_value() || t.years[b].has_value();
-  for (const Feature feature : {Feature::tag_storeys, Feature::tag_roof, Feature::tag_roof_storeys, Feature::tag_year}) {
+  for (const Feature feature :
+       {Feature::tag_storeys, Feature::tag_roof, Feature::tag_roof_storeys, Feature::tag_year}) {
     any = any || f.features[b].has(feature);
     f.features[b][feature] = kUnknown;
   }
@@ -91,7 +92,8 @@ std::vector<std::uint8_t> in_quarters(const evidence::FactsExtract& facts, const
     if (facts.features[b].has(Feature::area) && hide_all(f, t, b)) telling.emplace_back(hash_of(store[b].id), b);
   std::sort(telling.begin(), telling.end());
   const auto away = [&](std::uint32_t a, std::uint32_t b) {
-    return std::hypot(facts.places[a].place.x - facts.places[b].place.x, facts.places[a].place.y - facts.places[b].place.y);
+    return std::hypot(facts.places[a].place.x - facts.places[b].place.x,
+                      facts.places[a].place.y - facts.places[b].place.y);
   };
   std::vector<std::uint32_t> points;
   for (const auto& [hash, b] : telling)
@@ -167,7 +169,8 @@ void write_table(const std::string& input, const std::string& configs, const std
   const context::VicinityFinder vicinity(extract, store, context);
   evidence::FactsExtract facts =
       evidence::facts_extract(extract, store, repaired.first, context, vicinity, kWorkers, progress);
-  classify::Tables tables = answers || conditions ? classify::Tables::read(configs) : classify::Tables::read_without_weights(configs);
+  classify::Tables tables =
+      answers || conditions ? classify::Tables::read(configs) : classify::Tables::read_without_weights(configs);
   const evidence::TagFacts tags = evidence::tag_facts(extract, store, context, tables, projection, facts);
 
   Answers a;
@@ -254,8 +257,9 @@ void write_table(const std::string& input, const std::string& configs, const std
     c.hidden = again(f, t);
   }
 
-  constexpr std::string_view kTags[] = {"building", "start_date", "building:architecture", "name", "heritage", "historic",
-                                        "wikidata", "wikipedia", "architect"};
+  constexpr std::string_view kTags[] = {"building", "start_date", "building:architecture",
+                                        "name",     "heritage",   "historic",
+                                        "wikidata", "wikipedia",  "architect"};
   auto out = fmt::output_file(table);
   std::string head =
       "id,x,y,lon,lat,block,street,house,parts,storeys,height,roof_shape,year,year_confidence,years_from,years_to,non_"
@@ -279,7 +283,8 @@ void write_table(const std::string& input, const std::string& configs, const std
       for (const auto name : model::kStyleClassNames) head += fmt::format(",{}_style_{}", set, name);
       for (const auto name : model::kEraNames) head += fmt::format(",{}_era_{}", set, name);
       for (const auto name : model::kMorphologyNames) head += fmt::format(",{}_morphology_{}", set, name);
-      for (const char* name : {"substyle", "substyle_p", "non_house", "storeys", "storeys_p", "storeys_within", "roof", "roof_p"})
+      for (const char* name :
+           {"substyle", "substyle_p", "non_house", "storeys", "storeys_p", "storeys_within", "roof", "roof_p"})
         head += fmt::format(",{}_{}", set, name);
     }
   }
@@ -299,7 +304,8 @@ void write_table(const std::string& input, const std::string& configs, const std
       const model::Location l = footprints::box_centre(extract, m);
       std::string touching;
       for (const evidence::Contact& contact : facts.contacts_of(b))
-        touching += (touching.empty() ? "" : " ") + store[contact.other].id.text() + ":" + fmt::format("{:.1f}", contact.length);
+        touching += (touching.empty() ? "" : " ") + store[contact.other].id.text() + ":" +
+                    fmt::format("{:.1f}", contact.length);
       const auto optional = [](const auto& v) { return v ? fmt::format("{:g}", *v) : std::string(); };
       std::string row = fmt::format(
           "{},{:.1f},{:.1f},{:.6f},{:.6f},{},{:x},{},{},{},{},{},{},{},{},{},{},{}", m.id.text(), p.place.x, p.place.y,
@@ -336,8 +342,8 @@ void write_table(const std::string& input, const std::string& configs, const std
           for (const float v : s.morphology) row += "," + number(v);
           const evidence::StoreysEstimate& storeys = set->storeys[b];
           const evidence::RoofEstimate& roof = set->roofs[b];
-          row += fmt::format(",{},{:.3f},{},{:g},{:.3f},{:.3f},{},{:.3f}", tables.catalogue[s.substyle].id, s.substyle_p,
-                             s.non_house ? 1 : 0, storeys.storeys, storeys.confidence, storeys.within_one,
+          row += fmt::format(",{},{:.3f},{},{:g},{:.3f},{:.3f},{},{:.3f}", tables.catalogue[s.substyle].id,
+                             s.substyle_p, s.non_house ? 1 : 0, storeys.storeys, storeys.confidence, storeys.within_one,
                              classify::name(classify::family_of(roof.shape)), roof.confidence);
         }
       }
