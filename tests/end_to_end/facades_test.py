@@ -57,7 +57,7 @@ class Facades(BuildTest):
         self.assertEqual(full.count('<bldg:opening>'), windows + doors)
         self.assertEqual(text.count('<core:ImplicitGeometry>'),
                          len(re.findall('<bldg:BuildingInstallation [^>]*><bldg:function>[^<]*</bldg:function>\\s*<bldg:lod3Impl', full)))
-        self.assertLess(2.5 * len(text), len(full))
+        self.assertLess(2.2 * len(text), len(full), 'elements are told once; bodies along the edges of roofs are whole in both')
         self.assertLess(placed['meshes'], placed['ext'] / 4, 'pieces are stored once')
         for name in files_of(out, '.glb'):
             draws, stored, shown, _ = glb_counts.count_scene(glb_json(os.path.join(out, name)))

@@ -158,14 +158,14 @@ nlohmann::json PropertyTable::text_enums() const {
   for (const Data& data : columns_) {
     if (data.names.empty()) continue;
     nlohmann::json values = nlohmann::json::array();
-    const auto add = [&](const std::string& name, std::size_t value) {
+    const auto add_value = [&](const std::string& name, std::size_t value) {
       nlohmann::json entry;
       entry.emplace("name", name);
       entry.emplace("value", value);
       values.push_back(std::move(entry));
     };
-    for (std::size_t i = 0; i < data.names.size(); ++i) add(data.names[i], i);
-    if (!data.column.no_data_name.empty()) add(data.column.no_data_name, kAbsentText);
+    for (std::size_t i = 0; i < data.names.size(); ++i) add_value(data.names[i], i);
+    if (!data.column.no_data_name.empty()) add_value(data.column.no_data_name, kAbsentText);
     nlohmann::json enumeration;
     enumeration.emplace("valueType", "UINT8");
     enumeration.emplace("values", std::move(values));
