@@ -7,6 +7,7 @@
 //   drawn                              share of the picture that is not background
 //   colours                            number of different colours in it
 import * as THREE from 'three';
+import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 import { TilesRenderer, WGS84_ELLIPSOID } from '3d-tiles-renderer';
 import { GLTFExtensionsPlugin } from '3d-tiles-renderer/plugins';
 import { TilesetValidationPlugin } from '3d-tiles-renderer/src/three/plugins/TilesetValidationPlugin.js';
@@ -24,7 +25,7 @@ async function show() {
 
   const errors = [];
   const tiles = new TilesRenderer('/build/tileset.json');
-  tiles.registerPlugin(new GLTFExtensionsPlugin({ metadata: true }));
+  tiles.registerPlugin(new GLTFExtensionsPlugin({ metadata: true, meshoptDecoder: MeshoptDecoder }));
   tiles.registerPlugin(new TilesetValidationPlugin());
   tiles.addEventListener('load-error', ({ error, url }) => errors.push(`${url}: ${error}`));
   tiles.errorTarget = 0;
