@@ -23,7 +23,7 @@ namespace blockrand::outputs {
 enum class Stream : std::uint8_t {
   positions,               ///< 3 floats, multiples of 1/4096
   tile_positions,          ///< 3 floats, multiples of 1/2048
-  far_positions,           ///< 3 floats of a mesh that is too wide for that
+  far_positions,           ///< 3 floats of a mesh that is too wide for that, or has slivers that rounding would turn over
   normals,                 ///< 3 signed bytes and an empty one
   colours,                 ///< 4 words
   texture_places,          ///< 2 words

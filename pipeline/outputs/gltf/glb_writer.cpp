@@ -62,13 +62,13 @@ class MeshWriter {
     std::size_t triangles = 0;
     for (const MeshPrimitive& all : primitives) {
       const MeshPrimitive p = packed(all, order);
-      if (p.indices.empty()) continue;
+      const bool round = !far_ && !rounding_turns(p);
       triangles += p.indices.size() / 3;
       if (json.back() == '}') json += ',';
       json += "{\"attributes\":{";
       attribute(json, "COLOR_0", add_colours(p));
       attribute(json, "NORMAL", add_normals(p));
-      attribute(json, "POSITION", add_positions(p));
+      attribute(json, "POSITION", add_positions(p, round));
       attribute(json, "TEXCOORD_0", add_classes(p, table));
       attribute(json, "_FEATURE_ID_0", add_features(p));
       json += "},\"extensions\":{\"EXT_mesh_features\":" + feature_ids(p) + "},\"indices\":";
@@ -97,28 +97,43 @@ class MeshWriter {
     append_number(json, std::int64_t{accessor});
   }
 
-  /// \return the primitive without triangles that have no area once their corners are whole steps, in the order in which
-  /// it packs best
+  static std::int64_t whole(double metres) {
+    return static_cast<std::int64_t>(std::nearbyint(metres * kTileStepsPerMetre));
+  }
+
+  /// Whether a triangle loses its area or looks the other way once its corners are whole steps: a sliver along an
+  /// outline of thousands of corners. Rounding it would fold the surface, and leaving it out would open it.
+  bool rounding_turns(const MeshPrimitive& p) const {
+    for (std::size_t t = 0; t + 2 < p.indices.size(); t += 3) {
+      std::array<std::array<double, 3>, 2> before{}, after{};
+      const model::Point3& a = mesh_.positions[p.vertices[p.indices[t]].position];
+      for (std::size_t k = 0; k < 2; ++k) {
+        const model::Point3& b = mesh_.positions[p.vertices[p.indices[t + 1 + k]].position];
+        before[k] = {b.x - a.x, b.y - a.y, b.z - a.z};
+        after[k] = {static_cast<double>(whole(b.x) - whole(a.x)), static_cast<double>(whole(b.y) - whole(a.y)),
+                    static_cast<double>(whole(b.z) - whole(a.z))};
+      }
+      double same_side = 0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+        same_side += (before[0][j] * before[1][k] - before[0][k] * before[1][j]) *
+                     (after[0][j] * after[1][k] - after[0][k] * after[1][j]);
+      }
+      if (!(same_side > 0)) return true;
+    }
+    return false;
+  }
+
+  /// \return the primitive in the order in which it packs best
   MeshPrimitive packed(const MeshPrimitive& p, Order order) const {
-    using Steps = std::array<std::int64_t, 3>;
     std::vector<FaceCorner> corners;
     corners.reserve(p.vertices.size());
     for (const MeshVertex& v : p.vertices) {
       const model::Point3& enu = mesh_.positions[v.position];
-      const auto whole = [](double x) { return static_cast<std::int64_t>(std::nearbyint(x * kTileStepsPerMetre)); };
       corners.push_back({{whole(enu.x), whole(enu.y), whole(enu.z)}, v.normal});
     }
     MeshPrimitive out;
-    for (std::size_t t = 0; t + 2 < p.indices.size(); t += 3) {
-      const Steps &a = corners[p.indices[t]].steps, &b = corners[p.indices[t + 1]].steps,
-                  &c = corners[p.indices[t + 2]].steps;
-      const auto cross = [&](std::size_t i, std::size_t k) {
-        return (b[i] - a[i]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[i] - a[i]);
-      };
-      if (!far_ && cross(0, 1) == 0 && cross(1, 2) == 0 && cross(2, 0) == 0) continue;
-      out.indices.insert(out.indices.end(), p.indices.begin() + static_cast<std::ptrdiff_t>(t),
-                         p.indices.begin() + static_cast<std::ptrdiff_t>(t + 3));
-    }
+    out.indices = p.indices;
     const std::vector<std::uint32_t> numbers = order == Order::along_faces
                                                    ? order_along_faces(out.indices, corners, kColumn)
                                                    : packing_order(out.indices, p.vertices.size());
@@ -130,7 +145,8 @@ class MeshWriter {
     return out;
   }
 
-  int add_positions(const MeshPrimitive& p) {
+  /// \param round  to whole steps
+  int add_positions(const MeshPrimitive& p, bool round) {
     std::vector<float> values;
     values.reserve(3 * p.vertices.size());
     std::array<std::array<double, 3>, 2> bounds{};
@@ -138,7 +154,7 @@ class MeshWriter {
       const model::Point3& enu = mesh_.positions[v.position];
       const std::array<double, 3> xyz = y_up(enu.x, enu.y, enu.z);
       for (std::size_t i = 0; i < 3; ++i) {
-        const double stored = far_ ? xyz[i] : std::nearbyint(xyz[i] * kTileStepsPerMetre) / kTileStepsPerMetre;
+        const double stored = round ? std::nearbyint(xyz[i] * kTileStepsPerMetre) / kTileStepsPerMetre : xyz[i];
         const float value = static_cast<float>(stored) + 0.0f;  // no -0
         const bool first = values.size() < 3;
         bounds[0][i] = first ? value : std::min<double>(bounds[0][i], value);
@@ -146,7 +162,7 @@ class MeshWriter {
         values.push_back(value);
       }
     }
-    return add<float>(far_ ? Stream::far_positions : Stream::tile_positions, values, Component::float32, "VEC3", p,
+    return add<float>(round ? Stream::tile_positions : Stream::far_positions, values, Component::float32, "VEC3", p,
                       false, bounds);
   }
 

@@ -190,7 +190,12 @@ model::BuildingPart& SampleRegion::add_part(model::Building& building, const std
 
 model::BuildingPart& SampleRegion::add_box(model::Building& building, const std::string& part_id, double x, double y,
                                            double width, double depth, double base, double height) {
-  model::BuildingPart& part = add_part(building, part_id, rectangle(x, y, width, depth));
+  return add_prism(building, part_id, rectangle(x, y, width, depth), base, height);
+}
+
+model::BuildingPart& SampleRegion::add_prism(model::Building& building, const std::string& part_id, model::Polygon plan,
+                                             double base, double height) {
+  model::BuildingPart& part = add_part(building, part_id, std::move(plan));
   std::tie(part.lod1, part.lod1_triangles) = prism(part.plan, base, base + height);
   part.lod2 = part.lod1;
   part.lod2_triangles = part.lod1_triangles;

@@ -30,6 +30,8 @@ class SampleRegion {
   /// A part with LoD1 box and LoD2 box or gable over the rectangle; attributes filled.
   model::BuildingPart& add_box(model::Building& building, const std::string& part_id, double x, double y, double width,
                                double depth, double base, double height);
+  model::BuildingPart& add_prism(model::Building& building, const std::string& part_id, model::Polygon plan,
+                                 double base, double height);
   model::BuildingPart& add_gable(model::Building& building, const std::string& part_id, double x, double y,
                                  double width, double depth, double base, double eaves, double ridge);
   /// A ring of four wings around a courtyard: faces with holes.
