@@ -1,6 +1,7 @@
 #include "pipeline/base/heap.h"
 
 #include <malloc.h>
+#include <sys/prctl.h>
 
 #include <cstddef>
 #include <cstdio>
@@ -27,6 +28,8 @@ void give_memory_back() {
 }
 
 void keep_memory_low() {
+  // A huge page stays as long as a byte of it is used: 50 MB at the peak of a dense area.
+  ::prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);
   if (mallctl == nullptr) {
     constexpr int kKept = 200'000;  // bytes at the end of the heap
     ::mallopt(M_TRIM_THRESHOLD, kKept);

@@ -184,7 +184,7 @@ void note_tile(WorkCache& cache, const std::string& tile, const TileKey& key, st
 
 /// Buildings that an area works on at a time at LoD3, where tiles have as many (own choice: two of the largest tiles of a dense city took
 /// 440 MB beside each other).
-constexpr std::size_t kMostBuildingsAtATime = 200;
+constexpr std::size_t kMostBuildingsAtATime = 100;
 
 /// A tile of the build.
 struct TileToTell {

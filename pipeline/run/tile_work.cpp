@@ -54,7 +54,8 @@ OpenOutputs::OpenOutputs(const outputs::OutputContext& context) {
 namespace {
 
 /// Products and files, in the order of the outputs; each is written by whichever thread is free.
-void write_outputs(const outputs::FinishedTile& tile, const OpenOutputs& open, TileResult& result) {
+/// \param at_once  outputs beside each other: less time, more memory
+void write_outputs(const outputs::FinishedTile& tile, const OpenOutputs& open, bool at_once, TileResult& result) {
   result.products.resize(open.list.size());
   std::vector<std::vector<base::PublishedFile>> written(open.list.size());
   const auto write = [&](std::size_t i, std::vector<base::PublishedFile> files) {
@@ -63,9 +64,13 @@ void write_outputs(const outputs::FinishedTile& tile, const OpenOutputs& open, T
     result.products[i] = open.list[i]->write_tile(own);
     return std::move(own.files);
   };
-  base::share(open.list.size(), [&](std::size_t i) {
+  const auto write_own = [&](std::size_t i) {
     if (!open.names_files[i]) written[i] = write(i, {});
-  });
+  };
+  if (at_once)
+    base::share(open.list.size(), write_own);
+  else
+    for (std::size_t i = 0; i < open.list.size(); ++i) write_own(i);
   for (std::vector<base::PublishedFile>& files : written)
     result.files.insert(result.files.end(), std::make_move_iterator(files.begin()),
                         std::make_move_iterator(files.end()));
@@ -90,8 +95,9 @@ TileResult work_on_tile(std::size_t shard, std::size_t place, const TileInputs& 
       .has_parts = std::ranges::any_of(region.buildings, [](const model::Building& b) { return !b.parts.empty(); }),
       .final_state = account.final_states(result.outcomes.list, inputs.extract),
       .files = {}};
-  write_outputs(tile, open, result);
-  if (&told != &inputs.extract)
+  const bool in_area = &told != &inputs.extract;
+  write_outputs(tile, open, !in_area, result);
+  if (in_area)
     for (Outcome& o : result.outcomes.list) o.index = index_in(told, inputs.extract.buildings[o.index].id).value();
   result.rows = std::move(region.report.rows);
   if (open.takes_regions || open.keeps_whole) result.region = std::move(region);

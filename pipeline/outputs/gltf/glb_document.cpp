@@ -107,6 +107,10 @@ int GlbDocument::view_of(Stream stream) {
 std::size_t GlbDocument::append_bytes(Stream stream, const void* bytes, std::size_t size) {
   std::string& to = views_[static_cast<std::size_t>(view_of(stream))].bytes;
   const std::size_t at = to.size();
+  if (const auto more = expected_.find(stream); more != expected_.end()) {
+    to.reserve(at + more->second * info_of(stream).size);
+    expected_.erase(more);
+  }
   to.append(static_cast<const char*>(bytes), size);
   return at;
 }

@@ -21,22 +21,22 @@ namespace blockrand::outputs {
 
 /// Bytes of one kind, which share a buffer view.
 enum class Stream : std::uint8_t {
-  positions,               ///< 3 floats, multiples of 1/4096
-  tile_positions,          ///< 3 floats, multiples of 1/2048
-  far_positions,           ///< 3 floats of a mesh that is too wide for that, or has slivers that rounding would turn over
-  normals,                 ///< 3 signed bytes and an empty one
-  colours,                 ///< 4 words
-  texture_places,          ///< 2 words
-  features,                ///< a word and an empty one
-  wide_features,           ///< a float
-  indices,                 ///< a word
-  element_positions,       ///< 3 signed words and an empty one
-  translations,            ///< of instances: 3 floats, whole numbers
-  far_translations,        ///< the same, where they are too large to be compressed as such
-  rotations,               ///< 4 signed words
-  scales,                  ///< 3 floats
-  piece_scales,            ///< 3 floats, multiples of 2^-17 below 64
-  instance_features,       ///< a word
+  positions,          ///< 3 floats, multiples of 1/4096
+  tile_positions,     ///< 3 floats, multiples of 1/2048
+  far_positions,      ///< 3 floats of a mesh that is too wide for that, or has slivers that rounding would turn over
+  normals,            ///< 3 signed bytes and an empty one
+  colours,            ///< 4 words
+  texture_places,     ///< 2 words
+  features,           ///< a word and an empty one
+  wide_features,      ///< a float
+  indices,            ///< a word
+  element_positions,  ///< 3 signed words and an empty one
+  translations,       ///< of instances: 3 floats, whole numbers
+  far_translations,   ///< the same, where they are too large to be compressed as such
+  rotations,          ///< 4 signed words
+  scales,             ///< 3 floats
+  piece_scales,       ///< 3 floats, multiples of 2^-17 below 64
+  instance_features,  ///< a word
   wide_instance_features,  ///< a float
 };
 
@@ -79,6 +79,8 @@ class GlbDocument {
     static_assert(std::is_trivially_copyable_v<T>);
     return append_bytes(stream, values.data(), values.size() * sizeof(T));
   }
+  /// How many elements append() will add to the stream, about: growing by doubling would cost its size again.
+  void expect(Stream stream, std::size_t elements) { expected_[stream] += elements; }
   /// A buffer view of its own, aligned to 8 bytes and never compressed: a column of a property table.
   int add_view(std::string bytes);
 
@@ -109,6 +111,7 @@ class GlbDocument {
   int view_of(Stream stream);
 
   std::vector<View> views_;
+  std::map<Stream, std::size_t> expected_;
   std::map<Stream, int> view_numbers_;
   std::map<std::string, int> material_numbers_;
   std::vector<std::string> accessors_, materials_, meshes_, nodes_, images_;

@@ -40,7 +40,8 @@ constexpr double kColumn = kTileStepsPerMetre / 100;
 /// Appends vertices and the accessors of the primitives to a document.
 class MeshWriter {
  public:
-  MeshWriter(GlbDocument& document, const Mesh& mesh, std::size_t features)
+  /// Takes primitives out of `mesh` as it writes them.
+  MeshWriter(GlbDocument& document, Mesh& mesh, std::size_t features)
       : document_(document), mesh_(mesh), wide_features_(features > 0xFFFF) {
     far_ = std::max({std::fabs(mesh.min.x), std::fabs(mesh.min.y), std::fabs(mesh.min.z), std::fabs(mesh.max.x),
                      std::fabs(mesh.max.y), std::fabs(mesh.max.z)}) > kFinestReach;
@@ -49,6 +50,12 @@ class MeshWriter {
   /// A node of the solids, and one of the pieces of elements, by whose name readers know them apart.
   /// \param material  for which `table` tells where classes are \return how many triangles it wrote
   std::size_t write(int material, const MaterialTable& table) {
+    std::size_t vertices = 0;
+    for (const auto* list : {&mesh_.primitives, &mesh_.pieces})
+      for (const MeshPrimitive& p : *list) vertices += p.vertices.size();
+    for (const Stream stream : {Stream::colours, Stream::normals, far_ ? Stream::far_positions : Stream::tile_positions,
+                                Stream::texture_places, wide_features_ ? Stream::wide_features : Stream::features})
+      document_.expect(stream, vertices);
     return write(mesh_.primitives, "", material, table, Order::along_faces) +
            write(mesh_.pieces, kPiecesName, material, table, Order::vertex_cache);
   }
@@ -56,12 +63,13 @@ class MeshWriter {
  private:
   enum class Order : std::uint8_t { along_faces, vertex_cache };
 
-  std::size_t write(const std::vector<MeshPrimitive>& primitives, std::string_view name, int material,
+  std::size_t write(std::vector<MeshPrimitive>& primitives, std::string_view name, int material,
                     const MaterialTable& table, Order order) {
     std::string json = "{\"primitives\":[";
     std::size_t triangles = 0;
-    for (const MeshPrimitive& all : primitives) {
+    for (MeshPrimitive& all : primitives) {
       const MeshPrimitive p = packed(all, order);
+      all = {};
       const bool round = !far_ && !rounding_turns(p);
       triangles += p.indices.size() / 3;
       if (json.back() == '}') json += ',';
@@ -244,7 +252,7 @@ class MeshWriter {
   }
 
   GlbDocument& document_;
-  const Mesh& mesh_;
+  Mesh& mesh_;
   bool wide_features_, far_ = false;
 };
 
@@ -296,23 +304,26 @@ void write_batch(GlbDocument& document, const model::Region& region, const GlbOp
   if (options.lod >= 3 && !bake) groups = element_instances(region, options.frame);
   PiecePlan plan;
   if (options.instancing == Instancing::ext) plan = plan_pieces(region, groups, kMostShapes);
-  const Mesh mesh = build_mesh(region, options.lod, options.frame, bake, plan.baked);
   const MaterialTable materials(region.materials);
   int material = -1;
-  if (!mesh.empty() || !plan.placed.empty())
-    material = document.add_material(materials.material_json(document.add_texture(materials.png())));
-  if (!mesh.empty()) {
+  const bool has_mesh = [&] {  // the mesh is gone before pieces are written: of a dense tile it takes 100 MB
+    Mesh mesh = build_mesh(region, options.lod, options.frame, bake, plan.baked);
+    plan.baked = {};
+    if (!mesh.empty() || !plan.placed.empty())
+      material = document.add_material(materials.material_json(document.add_texture(materials.png())));
+    if (mesh.empty()) return false;
+    add_box(glb, true, mesh.min, mesh.max);
     glb.triangles = MeshWriter(document, mesh, rows).write(material, materials);
     document.use("EXT_mesh_features", false);
     document.use("KHR_mesh_quantization", true);
-    add_box(glb, true, mesh.min, mesh.max);
-  }
+    return true;
+  }();
   InstanceFigures instances;
   if (options.instancing == Instancing::ext)
     instances = write_pieces(document, region, groups, plan, material, materials, rows);
   else if (!groups.empty())
     instances = write_instances(document, region, groups);
-  if (instances.places > 0) add_box(glb, mesh.empty(), instances.min, instances.max);
+  if (instances.places > 0) add_box(glb, !has_mesh, instances.min, instances.max);
   glb.triangles += instances.triangles;
   glb.placements = instances.places;
   glb.elements = instances.elements;

@@ -347,14 +347,20 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool b
   Mesh mesh;
   mesh.positions = std::move(bodies.local);
   Primitives primitives(Primitives::By::all);
-  SolidWriter writer(bodies.source);
-  for (const SolidRef& ref : bodies.solids) writer.add(ref, 0, mesh, primitives);
+  {
+    SolidWriter writer(bodies.source);
+    for (const SolidRef& ref : bodies.solids) writer.add(ref, 0, mesh, primitives);
+  }
+  bodies = {};
   if (bake && lod >= 3)
     for (const InstanceGroup& group : element_instances(region, frame)) {
       const model::ColouredElement& element = region.elements[group.element];
       const ElementGeometry geometry = element_geometry(*element.element, false);
       for (const ElementInstance& at : group.instances) bake_element(element, geometry, at, mesh, primitives);
     }
+  std::size_t points = mesh.positions.size();
+  for (const BakedPiece& piece : pieces) points += piece.places->size() * piece.piece.vertices.size();
+  mesh.positions.reserve(points);
   Primitives of_pieces(Primitives::By::all);
   for (const BakedPiece& piece : pieces) bake_piece(piece, mesh, of_pieces);
   mesh.primitives = primitives.take();
