@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "pipeline/attributes/roof_edges.h"
+#include "pipeline/facades/bodies_on_roofs.h"
 #include "pipeline/geometry/polygon_measures.h"
-#include "pipeline/geometry/solid_overlap.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/model/vector.h"
 #include "styles/roofs/caps.h"
@@ -44,12 +44,6 @@ constexpr double kLowerNeighbour = 2.0;
 constexpr double kEavesDepth = 0.25;
 /// m between places at which the room before a wall is felt for, along it and away from it.
 constexpr double kFeelAlong = 0.5, kFeelOut = 0.05;
-
-bool is_old(const model::Attributes& a) {
-  const std::string& style = a.style.value;
-  return style == model::name(model::StyleClass::gruenderzeit) || style == model::name(model::StyleClass::tenement) ||
-         a.era.value == model::name(model::Era::pre1840) || a.era.value == model::name(model::Era::from1840);
-}
 
 /// What is seen of a body's faces.
 struct Looks {
@@ -288,32 +282,13 @@ class RoofDresser {
         continue;
       }
       made.triangles = std::move(*triangles);
-      if (building.parts.size() > 1 && meets_another(building, body, made)) {
+      if (building.parts.size() > 1 && meets_a_body(building, made, &body)) {
         ++left_out_[made.kind];
         continue;
       }
       paint(made, looks);
       body.lod3.roof_installations.push_back(std::move(made));
     }
-  }
-
-  /// Whether its interior meets that of another body of the building, or of what stands on one.
-  static bool meets_another(const model::Building& building, const BuildingPart& body,
-                            const model::RoofInstallation& made) {
-    const auto view = [](const model::Solid& solid, const model::SolidTriangles& triangles) {
-      return geometry::ClosedMesh{solid.vertices, triangles.triangles};
-    };
-    const geometry::ClosedMesh mine = view(made.solid, made.triangles);
-    for (const BuildingPart& part : building.parts) {
-      if (&part == &body) continue;
-      const bool detailed = !part.lod3.solid.empty();
-      if (geometry::interiors_meet(
-              mine, detailed ? view(part.lod3.solid, part.lod3.triangles) : view(part.lod2, part.lod2_triangles)))
-        return true;
-      for (const model::RoofInstallation& other : part.lod3.roof_installations)
-        if (geometry::interiors_meet(mine, view(other.solid, other.triangles))) return true;
-    }
-    return false;
   }
 
   bool has_parapet(const model::Attributes& a) const {

@@ -12,10 +12,10 @@
 
 #include "pipeline/attributes/roof_edges.h"
 #include "pipeline/base/random.h"
+#include "pipeline/facades/bodies_on_roofs.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/plan_shape.h"
 #include "pipeline/geometry/polygon_measures.h"
-#include "pipeline/geometry/solid_overlap.h"
 #include "pipeline/geometry/triangulate.h"
 #include "styles/roofs/chimneys.h"
 #include "styles/roofs/element_layout.h"
@@ -47,12 +47,6 @@ constexpr double kRaise = 3 / model::kGridStepsPerMetre;
 constexpr int kMostRaised = 4;
 /// m that roof windows keep from a chimney: rafters on both sides of a trimmer (own choice).
 constexpr double kFromChimney = 0.5;
-
-bool is_old(const model::Attributes& a) {
-  const std::string& style = a.style.value;
-  return style == model::name(model::StyleClass::gruenderzeit) || style == model::name(model::StyleClass::tenement) ||
-         a.era.value == model::name(model::Era::pre1840) || a.era.value == model::name(model::Era::from1840);
-}
 
 double within(double low, double high, double share) { return low + (high - low) * share; }
 
@@ -173,23 +167,6 @@ class RoofInstaller {
       if (its.high <= mine.low || its.low >= mine.high) continue;
       for (const Point3& p : solid.vertices)
         if (geometry::contains(other.plan, p.xy())) return true;
-    }
-    return false;
-  }
-
-  /// Whether the interiors of an installation and of a body, or of what stands on one, meet.
-  static bool meets_a_body(const model::Building& building, const model::RoofInstallation& installation) {
-    const auto view = [](const model::Solid& solid, const model::SolidTriangles& triangles) {
-      return geometry::ClosedMesh{solid.vertices, triangles.triangles};
-    };
-    const geometry::ClosedMesh mine = view(installation.solid, installation.triangles);
-    for (const BuildingPart& part : building.parts) {
-      const bool detailed = !part.lod3.solid.empty();
-      if (geometry::interiors_meet(
-              mine, detailed ? view(part.lod3.solid, part.lod3.triangles) : view(part.lod2, part.lod2_triangles)))
-        return true;
-      for (const model::RoofInstallation& other : part.lod3.roof_installations)
-        if (geometry::interiors_meet(mine, view(other.solid, other.triangles))) return true;
     }
     return false;
   }
