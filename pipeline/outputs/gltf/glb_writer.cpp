@@ -70,7 +70,8 @@ class MeshWriter {
     for (MeshPrimitive& all : primitives) {
       const MeshPrimitive p = packed(all, order);
       all = {};
-      const bool round = !far_ && !rounding_turns(p);
+      if (p.indices.empty()) continue;
+      const bool round = !far_ && (order == Order::vertex_cache || !rounding_turns(p));
       triangles += p.indices.size() / 3;
       if (json.back() == '}') json += ',';
       json += "{\"attributes\":{";
@@ -132,6 +133,15 @@ class MeshWriter {
     return false;
   }
 
+  /// Whether a triangle has no area once its corners are whole steps.
+  static bool is_flat(std::span<const FaceCorner> corners, std::span<const std::uint16_t> indices, std::size_t t) {
+    const auto &a = corners[indices[t]].steps, &b = corners[indices[t + 1]].steps, &c = corners[indices[t + 2]].steps;
+    const auto cross = [&](std::size_t i, std::size_t k) {
+      return (b[i] - a[i]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[i] - a[i]);
+    };
+    return cross(0, 1) == 0 && cross(1, 2) == 0 && cross(2, 0) == 0;
+  }
+
   /// \return the primitive in the order in which it packs best
   MeshPrimitive packed(const MeshPrimitive& p, Order order) const {
     std::vector<FaceCorner> corners;
@@ -141,7 +151,12 @@ class MeshWriter {
       corners.push_back({{whole(enu.x), whole(enu.y), whole(enu.z)}, v.normal});
     }
     MeshPrimitive out;
-    out.indices = p.indices;
+    for (std::size_t t = 0; t + 2 < p.indices.size(); t += 3) {
+      // Pieces of elements do not have to close; a solid would be open without it, and keeps floats.
+      if (!far_ && order == Order::vertex_cache && is_flat(corners, p.indices, t)) continue;
+      out.indices.insert(out.indices.end(), p.indices.begin() + static_cast<std::ptrdiff_t>(t),
+                         p.indices.begin() + static_cast<std::ptrdiff_t>(t + 3));
+    }
     const std::vector<std::uint32_t> numbers = order == Order::along_faces
                                                    ? order_along_faces(out.indices, corners, kColumn)
                                                    : packing_order(out.indices, p.vertices.size());
