@@ -26,6 +26,7 @@
 #include "pipeline/outputs/output.h"
 #include "pipeline/outputs/statistics.h"
 #include "pipeline/run/account.h"
+#include "pipeline/run/area_tiles.h"
 #include "pipeline/run/before_tiles.h"
 #include "pipeline/run/build_areas.h"
 #include "pipeline/run/build_inputs.h"
@@ -184,15 +185,7 @@ void note_tile(WorkCache& cache, const std::string& tile, const TileKey& key, st
 
 /// Buildings that an area works on at a time at LoD3, where tiles have as many (own choice: two of the largest tiles of a dense city took
 /// 440 MB beside each other).
-constexpr std::size_t kMostBuildingsAtATime = 100;
-
-/// A tile of the build.
-struct TileToTell {
-  model::TileId tile;
-  std::size_t place = 0;             ///< among the shards that outputs know
-  std::optional<std::size_t> shard;  ///< empty: it is not looked into, but what an earlier run made of it taken
-  std::string key;                   ///< of that
-};
+constexpr std::size_t kMostBuildingsAtATime = 200;
 
 /// What working on `todo` would do: nothing is worked on.
 void plan_tiles(std::span<const TileToTell> todo, const TileKeys* keys, WorkCache* cache, int workers,
@@ -287,77 +280,6 @@ void publish(base::StagedFolder& folder, const BuildOptions& options, BuildSumma
   } else if (const std::string left = folder.publish(); !left.empty()) {
     progress.warn("the old build could not be removed: " + left);
   }
-}
-
-// ---- areas
-
-/// Of the tiles that are looked into, and of the others as they were.
-AreaRecord record_tiles(const RecordInputs& inputs, AreaRecord before) {
-  const std::optional<std::set<model::TileId>>& only = inputs.area.only;
-  AreaRecord tiles = record_area(inputs, [&](const model::TileId& t) { return !only || only->contains(t); });
-  for (auto& [tile, told] : before)
-    if (!only->contains(tile)) tiles.emplace(tile, std::move(told));
-  return tiles;
-}
-
-/// \throws WindowTooSmall  they are not kept any more
-AreaRecord records_before(const AreaPart& part, WorkCache* cache) {
-  if (cache)
-    if (const std::optional<WorkCache::Found> found = cache->find(kRecords, part.before_key)) try {
-        return base::unpacked<AreaRecord>(found->bytes);
-      } catch (const base::UnpackError&) {
-      }
-  throw WindowTooSmall("records of tiles are missing");
-}
-
-/// Of the tiles that are looked into. \throws WindowTooSmall  more must be read for them
-void note_reaches(const TileChoice& area, const ReachInputs& inputs, AreaRecord& records) {
-  std::vector<model::TileId> tiles;
-  for (const auto& [tile, told] : records)
-    if (!area.only || area.only->contains(tile)) tiles.push_back(tile);
-  const geometry::PlanBox read = within_window(area.window, inputs.located.projection);
-  // What counts for an area lies within this (kHalo), however far boxes of boxes reach.
-  constexpr double kBent = 100;  // m: sides of windows are, in the projection
-  const georef::GeoBox halo = georef::with_halo(area.id, kHalo - kBent);
-  const geometry::PlanBox most =
-      within_window({halo.west, halo.south, halo.east, halo.north}, inputs.located.projection);
-  for (const auto& [tile, reach] : reaches_of(inputs, tiles)) {
-    records[tile].reach = reach;
-    if (area.only && !holds(read, common(most, needed_around(reach, rules_reach(inputs.book)))))
-      throw WindowTooSmall("tile " + text_of(tile) + " hears of more");
-  }
-}
-
-/// What outputs show of a tile. \throws WindowTooSmall  of one that is not looked into it is something else now
-void note_shown(std::span<const TileToTell> todo, const OpenOutputs& open, AreaRecord& records) {
-  for (const TileToTell& t : todo) {
-    std::string shown;
-    for (const auto& output : open.list) shown += output->reads_of_tile(t.place);
-    TileRecord& record = records.at(t.tile);
-    if (!t.shard && record.shown != shown) throw WindowTooSmall("pictures show tile " + text_of(t.tile));
-    record.shown = std::move(shown);
-  }
-}
-
-/// In tile order. \param area  null: all that is looked into
-std::vector<TileToTell> tiles_to_tell(std::span<const footprints::Shard> shards,
-                                      std::span<const std::size_t> looked_into, const AreaAsTold* area,
-                                      const AreaRecord& records) {
-  std::vector<TileToTell> out;
-  if (!area) {
-    for (const std::size_t shard : looked_into) out.push_back({shards[shard].tile, shard, shard, {}});
-    return out;
-  }
-  std::map<model::TileId, std::size_t> looked;
-  for (const std::size_t shard : looked_into) looked[shards[shard].tile] = shard;
-  for (std::size_t place = 0; place < area->shards.size(); ++place) {
-    TileToTell& t = out.emplace_back(TileToTell{area->shards[place].tile, place, {}, {}});
-    if (const auto shard = looked.find(t.tile); shard != looked.end())
-      t.shard = shard->second;
-    else
-      t.key = records.at(t.tile).key;
-  }
-  return out;
 }
 
 /// \param part  of a build in areas; null: everything, or what the options choose

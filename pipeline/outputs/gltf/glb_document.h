@@ -21,22 +21,22 @@ namespace blockrand::outputs {
 
 /// Bytes of one kind, which share a buffer view.
 enum class Stream : std::uint8_t {
-  positions,          ///< 3 floats, multiples of 1/4096
-  tile_positions,     ///< 3 floats, multiples of 1/2048
-  far_positions,      ///< 3 floats of a mesh that is too wide for that, or has slivers that rounding would turn over
-  normals,            ///< 3 signed bytes and an empty one
-  colours,            ///< 4 words
-  texture_places,     ///< 2 words
-  features,           ///< a word and an empty one
-  wide_features,      ///< a float
-  indices,            ///< a word
-  element_positions,  ///< 3 signed words and an empty one
-  translations,       ///< of instances: 3 floats, whole numbers
-  far_translations,   ///< the same, where they are too large to be compressed as such
-  rotations,          ///< 4 signed words
-  scales,             ///< 3 floats
-  piece_scales,       ///< 3 floats, multiples of 2^-17 below 64
-  instance_features,  ///< a word
+  positions,               ///< 3 floats, multiples of 1/4096
+  tile_positions,          ///< 3 floats, multiples of 1/2048
+  far_positions,           ///< 3 floats of a mesh that is too wide for that, or has slivers
+  normals,                 ///< 3 signed bytes and an empty one
+  colours,                 ///< 4 words
+  texture_places,          ///< 2 words
+  features,                ///< a word and an empty one
+  wide_features,           ///< a float
+  indices,                 ///< a word
+  element_positions,       ///< 3 signed words and an empty one
+  translations,            ///< of instances: 3 floats, whole numbers
+  far_translations,        ///< the same, where they are too large to be compressed as such
+  rotations,               ///< 4 signed words
+  scales,                  ///< 3 floats
+  piece_scales,            ///< 3 floats, multiples of 2^-17 below 64
+  instance_features,       ///< a word
   wide_instance_features,  ///< a float
 };
 

@@ -40,8 +40,8 @@ struct Glb {
 ///
 /// With objects for buildings as write_objects() says, without a required extension but for compression. Otherwise one
 /// mesh, indexed, y up: a primitive for every 65,535 vertices, all of one material (MaterialTable). Attributes lie in
-/// streams of their own (glb_document.h): POSITION as floats that are multiples of 1/2048 m, NORMAL (8 bits), COLOR_0
-/// (16 bits, linear light), TEXCOORD_0, which says the class of material, and _FEATURE_ID_0, the row of the part in the
+/// streams of their own (glb_document.h): POSITION as floats that are multiples of 1/2048 m, or any where these would turn a
+/// sliver of a solid over, NORMAL (8 bits), COLOR_0 (16 bits, linear light), TEXCOORD_0, which says the class of material, and _FEATURE_ID_0, the row of the part in the
 /// property table. Extensions: KHR_mesh_quantization (required), EXT_mesh_features,
 /// EXT_structural_metadata. Elements of LoD3 as GlbOptions::instancing says (piece_writer.h, instance_writer.h), with
 /// EXT_mesh_gpu_instancing (required) and EXT_instance_features; with compression EXT_meshopt_compression (required).

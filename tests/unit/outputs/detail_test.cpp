@@ -315,6 +315,32 @@ TEST(DetailGlb, BakedNodesAndInstancesShowTheSame) {
   EXPECT_LT(away, baked.triangles.size() / 20) << "of reveals that are cut along the other diagonal";
 }
 
+/// A rare ornament becomes part of the mesh, in whole steps. What of it has no area then is left out, as it need not close.
+TEST(DetailGlb, BakedPiecesHaveNoFlatTriangles) {
+  const auto triangles = [](Instancing how, bool sliver) {
+    SampleRegion s = facade_region();
+    for (model::ColouredElement& coloured : s.region().elements) {
+      if (coloured.element->name != "lamp") continue;
+      auto lamp = std::make_shared<model::Element>(*coloured.element);
+      if (sliver) {
+        lamp->mesh.faces.push_back({.first = static_cast<std::uint32_t>(lamp->mesh.indices.size()),
+                                    .count = 3,
+                                    .part = model::ElementPart::frame});
+        for (const model::Point3& p : {model::Point3{0, 0.5, 0}, {0.2, 0.5, 0}, {0.20001, 0.50001, 0}}) {
+          lamp->mesh.indices.push_back(static_cast<std::uint32_t>(lamp->mesh.vertices.size()));
+          lamp->mesh.vertices.push_back(p);
+        }
+      }
+      coloured.element = lamp;
+    }
+    const Scene scene(write_glb(s.region(), options(how)).bytes);
+    for (const Scene::Triangle& t : scene.triangles) EXPECT_GT(area(t), 0);
+    return scene.triangles.size();
+  };
+  for (const Instancing how : {Instancing::ext, Instancing::baked})
+    EXPECT_GE(triangles(how, true), triangles(how, false)) << "nothing else is lost";
+}
+
 /// What fits sixteen bits is written so, and nothing leaves its bounds.
 TEST(DetailGlb, BoundsHoldEveryTriangle) {
   const SampleRegion s = facade_region();
