@@ -9,12 +9,16 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "pipeline/attributes/assign_extract.h"
 #include "pipeline/attributes/tagged_buildings.h"
 #include "pipeline/base/error.h"
+#include "pipeline/base/heap.h"
+#include "pipeline/base/pack.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/publish.h"
 #include "pipeline/base/text.h"
@@ -23,6 +27,7 @@
 #include "pipeline/context/vicinity_finder.h"
 #include "pipeline/footprints/roof_lines.h"
 #include "pipeline/georef/tiles.h"
+#include "pipeline/outputs/gzip.h"
 #include "pipeline/outputs/output.h"
 #include "pipeline/outputs/statistics.h"
 #include "pipeline/run/account.h"
@@ -395,6 +400,12 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
       .memo = memo ? &*memo : nullptr};
   const OpenOutputs open(output_context);
   if (area) note_shown(todo, open, tiles_here);
+  // Records are asked for again when the tiles are done; until then they take an eighth of the room.
+  std::string resting;
+  if (area) {
+    resting = outputs::gzip(base::packed(std::exchange(tiles_here, {})), 1);
+    base::give_memory_back();
+  }
   const context::Ground ground(inputs.terrain ? &*inputs.terrain : nullptr, options.ground_height, projection);
   std::atomic<std::int64_t> context_time = 0;
   const evidence::StyleInputs style_inputs{prepared.facts, prepared.tags, prepared.styles, inputs.tables};
@@ -433,6 +444,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   }
   progress.begin("tiles", to_build, "buildings");
   std::vector<TileResult> slots(in_flight);
+  std::map<model::TileId, std::string> keys_here;  ///< of an area, as its records will have them
   Sums sums;
   std::uint64_t done = 0;
   const auto work = [&](std::size_t i) {
@@ -466,7 +478,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
     TileResult result = std::move(slots[i % in_flight]);
     ++(result.kept ? summary.tiles_kept : summary.tiles_built);
     for (const std::string_view why : result.why) ++summary.tiles_built_for[std::string(why)];
-    if (area && todo[i].shard) tiles_here[todo[i].tile].key = result.key;
+    if (area && todo[i].shard) keys_here[todo[i].tile] = result.key;
     sums.take(std::move(result), todo[i].place, options, open, account, record);
     done += told_shards[todo[i].place].seeds.size();
     progress.advance_to(done);
@@ -485,6 +497,8 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   progress.begin("documents", open.list.size() + 2);
   finish_outputs(open, sums.whole, account, record, progress);
   if (cache && part && !part->record_key.empty()) {
+    tiles_here = base::unpacked<AreaRecord>(outputs::gunzip(std::exchange(resting, {})));
+    for (auto& [tile, key] : keys_here) tiles_here[tile].key = std::move(key);
     cache->keep(kRecords, part->record_key, base::packed(tiles_here), {}, {});
     cache->keep(kReaches, part->record_key, base::packed(reaches_in(tiles_here)), {}, {});
   }

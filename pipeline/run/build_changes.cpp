@@ -173,26 +173,18 @@ struct TileSums {
   double heights = 0;  ///< m
 };
 
-/// The areas that two builds have alike, with the hash of their records.
-std::map<std::string, std::string> areas_alike(const std::string& before, const std::string& after) {
-  std::map<std::string, std::string> alike;
-  if (before.empty()) return alike;
-  const auto areas_of = [](const std::string& folder) {
-    std::ifstream file(folder + "/build.json", std::ios::binary);
-    const Json record = Json::parse(file, nullptr, false);
-    return record.is_object() && record.contains("areas") && record["areas"].is_object() ? record["areas"]
-                                                                                         : Json::object();
-  };
-  const Json old = areas_of(before), now = areas_of(after);
-  for (const auto& [name, area] : now.items())
-    if (old.contains(name) && member(area, "build_sha256") == member(old[name], "build_sha256"))
-      alike["areas/" + name] = member(area, "build_sha256");
-  return alike;
-}
+/// Of the tiles of an area, by the hash of what is told of them: the next night finds here what it has alike, without reading it.
+using AreaSums = std::map<std::string, TileSums>;
 
-void add(TileSums& sum, const TileSums& more) {
-  sum.all += more.all, sum.modelled += more.modelled, sum.simpler += more.simpler;
-  sum.with_height += more.with_height, sum.heights += more.heights;
+/// The areas of a build, by their folder, with the hash of their records.
+std::map<std::string, std::string> areas_of(const std::string& build) {
+  std::map<std::string, std::string> areas;
+  if (build.empty()) return areas;
+  std::ifstream file(build + "/build.json", std::ios::binary);
+  const Json record = Json::parse(file, nullptr, false);
+  if (!record.is_object() || !record.contains("areas") || !record["areas"].is_object()) return areas;
+  for (const auto& [name, area] : record["areas"].items()) areas["areas/" + name] = member(area, "build_sha256");
+  return areas;
 }
 
 TileSums sums_of(const ToldById& tile) {
@@ -222,9 +214,14 @@ std::string rounded(const std::string& value) {
 
 BuildChanges compare_builds(const std::string& before, const std::string& after, const base::Memo* memo) {
   BuildChanges out;
-  const std::map<std::string, std::string> alike = areas_alike(before, after);
+  const std::map<std::string, std::string> areas_before = areas_of(before);
+  std::map<std::string, std::string> alike;
   std::set<std::string> but_for;
-  for (const auto& [area, hash] : alike) but_for.insert(area);
+  for (const auto& [area, hash] : areas_of(after))
+    if (const auto was = areas_before.find(area); was != areas_before.end() && was->second == hash) {
+      alike.emplace(area, hash);
+      but_for.insert(area);
+    }
   const std::optional<Explained> old =
       before.empty() ? std::nullopt : std::optional<Explained>(std::in_place, before, but_for);
   const Explained now(after, but_for);
@@ -240,18 +237,32 @@ BuildChanges compare_builds(const std::string& before, const std::string& after,
     heights_before += sums.heights, heights_after += sums.heights;
     out.both += sums.with_height;
   };
-  const auto sums_of_area = [&](const std::string& record, const std::function<TileSums()>& work) {
-    return base::remembered<TileSums>(
+  const auto remembered_area = [&](const std::string& record, const std::function<AreaSums()>& work) {
+    return base::remembered<AreaSums>(
         memo, "told", [&](base::Packer& packer) { packer << std::string("area") << record; }, work);
   };
-  for (const auto& [area, hash] : alike)
-    add_alike(sums_of_area(hash, [&, &path = area] {
-      const Explained its(after + "/" + path);
-      TileSums all;
-      for (const auto& [tile, part] : its.tiles()) add(all, sums_of(its.read(tile)));
+  const auto sums_of_area = [&](const std::string& build, const std::string& area, const std::string& record) {
+    return remembered_area(record, [&] {
+      const Explained its(build + "/" + area);
+      AreaSums all;
+      for (const auto& [tile, part] : its.tiles()) {
+        const std::string hash = its.hash(tile);
+        all.emplace(hash.empty() ? tile : hash, sums_of(its.read(tile)));
+      }
       return all;
-    }));
-  std::map<std::string, TileSums> of_parts;  // of the areas that differ, for the next night
+    });
+  };
+  for (const auto& [area, hash] : alike)
+    for (const auto& [tile, sums] : sums_of_area(after, area, hash)) add_alike(sums);
+  AreaSums known;  // of the areas that differ, as they were
+  if (old && memo && old->asked() == now.asked())
+    for (const auto& [area, hash] : areas_before)
+      if (!alike.contains(area)) try {
+          known.merge(sums_of_area(before, area, hash));
+        } catch (const base::InputError&) {
+          // Its tiles are read one by one: what is damaged may be of no interest.
+        }
+  std::map<std::string, AreaSums> of_parts;  // the same as they are, for the next night
   const auto meet = [&](const std::string& id, const Told& was, const Told& is) {
     if (!was.modelled || !is.modelled) {
       if (was.modelled) out.removed.push_back(id), out.footprints[id] = was.ring;
@@ -269,11 +280,14 @@ BuildChanges compare_builds(const std::string& before, const std::string& after,
   ToldById gone, come;
   for (const std::string& tile : tiles) {
     const std::string hash = now.hash(tile);
+    const auto place = now.tiles().find(tile);
+    AreaSums* const area = place == now.tiles().end() || place->second.empty() ? nullptr : &of_parts[place->second];
     ToldById its;
     bool read = false;
     const auto sums_now = [&] {
+      if (const auto found = known.find(hash); !hash.empty() && found != known.end()) return found->second;
       return base::remembered<TileSums>(
-          hash.empty() ? nullptr : memo, "told", [&](base::Packer& packer) { packer << hash << now.asked(); },
+          hash.empty() || area ? nullptr : memo, "told", [&](base::Packer& packer) { packer << hash << now.asked(); },
           [&] {
             if (!read) its = now.read(tile);
             read = true;
@@ -283,12 +297,12 @@ BuildChanges compare_builds(const std::string& before, const std::string& after,
     if (old && !hash.empty() && old->hash(tile) == hash && old->asked() == now.asked()) {
       const TileSums sums = sums_now();
       add_alike(sums);
-      add(of_parts[now.tiles().at(tile)], sums);
+      if (area) area->emplace(hash, sums);
       continue;
     }
     its = now.read(tile), read = true;
     const TileSums sums = sums_now();  // for the next night
-    if (const auto part = now.tiles().find(tile); part != now.tiles().end()) add(of_parts[part->second], sums);
+    if (area) area->emplace(hash.empty() ? tile : hash, sums);
     ToldById mine = old ? old->read(tile) : ToldById();
     out.all_before += mine.size(), out.all_after += its.size();
     for (const auto& [id, told] : mine) out.before += told.modelled, out.simpler_before += told.simpler;
@@ -319,8 +333,7 @@ BuildChanges compare_builds(const std::string& before, const std::string& after,
     }
   }
   for (const auto& [part, sums] : of_parts)
-    if (!part.empty())
-      sums_of_area(base::sha256_file(after + "/" + part + "build.json"), [&sums = sums] { return sums; });
+    remembered_area(base::sha256_file(after + "/" + part + "build.json"), [&its = sums] { return its; });
   for (const auto& [id, told] : gone)
     if (told.modelled) out.removed.push_back(id), out.footprints[id] = told.ring;
   for (const auto& [id, told] : come)
