@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "importers/osm/bzip2_stream.h"
+#include "importers/osm/changed_objects.h"
 #include "importers/osm/osm_file.h"
 #include "pipeline/base/error.h"
 #include "pipeline/model/osm_keys.h"
@@ -138,21 +139,22 @@ class Merge {
   /// \param write  takes each object of the result, in order. \returns  whether it stays
   /// \param leave  takes what was there and does not stay as it is now
   /// \param clip   whether something may be outside: then what was never there is not noted as deleted
+  /// \param changed  null, or gets what differs
   Merge(std::span<const Versioned> changes, std::function<bool(const OSMObject&)> write,
-        std::function<void(const OSMObject&)> leave, bool clip)
-      : changes_(changes), write_(std::move(write)), leave_(std::move(leave)), clip_(clip) {}
+        std::function<void(const OSMObject&)> leave, bool clip, ChangedObjects* changed)
+      : changes_(changes), write_(std::move(write)), leave_(std::move(leave)), clip_(clip), changed_(changed) {}
 
   /// In the order of before(), each object once; one that is not visible was deleted before.
   void add(const OSMObject& object) {
     while (next_ < changes_.size() && before(*changes_[next_].object, object)) take_new(*changes_[next_++].object);
     if (next_ >= changes_.size() || !same_object(*changes_[next_].object, object)) {
-      write_(object);
+      keep(object);
       return;
     }
     const OSMObject& change = *changes_[next_++].object;
     if (change.version() < object.version() || (change.version() == object.version() && same_content(change, object))) {
       ++applied_.known;
-      write_(object);
+      keep(object);
       return;
     }
     std::uint64_t& count = change.visible() != object.visible()
@@ -160,8 +162,10 @@ class Merge {
                                : (change.visible() ? applied_.modified : applied_.known);
     if (write_(change)) {
       ++count;
+      if (changed_) changed_->add(&object, &change);
       return;
     }
+    if (changed_) changed_->add(&object, nullptr);
     ++(object.visible() ? applied_.deleted : applied_.outside);
     leave_(change);
   }
@@ -194,13 +198,20 @@ class Merge {
       ++applied_.outside;
       return;
     }
-    ++(!write_(object) ? applied_.outside : object.visible() ? applied_.created : applied_.known);
+    const bool written = write_(object);
+    if (written && changed_) changed_->add(nullptr, &object);
+    ++(!written ? applied_.outside : object.visible() ? applied_.created : applied_.known);
+  }
+  /// As it was, where it is still inside.
+  void keep(const OSMObject& object) {
+    if (!write_(object) && changed_) changed_->add(&object, nullptr);
   }
 
   std::span<const Versioned> changes_;
   std::function<bool(const OSMObject&)> write_;
   std::function<void(const OSMObject&)> leave_;
   bool clip_;
+  ChangedObjects* changed_;
   std::size_t next_ = 0;
   AppliedChanges applied_;
 };
@@ -382,6 +393,8 @@ class Base {
 
 }  // namespace
 
+std::shared_ptr<ChangedObjects> no_changed_objects() { return std::make_shared<ChangedObjects>(); }
+
 bool is_change_file(std::string_view path) {
   const std::string name = small_letters(path);
   return name.ends_with(".osc") || name.ends_with(".osc.gz") || name.ends_with(".osc.bz2");
@@ -405,15 +418,16 @@ std::optional<std::uint64_t> replication_sequence(const std::string& path) {
 }
 
 AppliedChanges apply_changes(const std::string& base_path, std::span<const std::string> files, const std::string& out,
-                             const ClipPolygon* polygon) {
+                             const ClipPolygon* polygon, ChangedObjects* changed) {
   use_own_bzip2();
   osmium::thread::Pool pool(2);
   Base base(base_path);
   const Changes changes(files, pool);
   const auto merged = [&](
                           const std::function<bool(const OSMObject&)>& write,
-                          const std::function<void(const OSMObject&)>& leave = [](const OSMObject&) {}) {
-    Merge merge(changes.newest(), write, leave, polygon != nullptr);
+                          const std::function<void(const OSMObject&)>& leave = [](const OSMObject&) {},
+                          ChangedObjects* noted = nullptr) {
+    Merge merge(changes.newest(), write, leave, polygon != nullptr, noted);
     base.for_each([&](const OSMObject& object) { merge.add(object); });
     return merge.finish();
   };
@@ -451,6 +465,7 @@ AppliedChanges apply_changes(const std::string& base_path, std::span<const std::
       }
     };
     osmium::memory::Buffer copy(1024, osmium::memory::Buffer::auto_grow::yes);
+    if (changed) changed->clear();
     AppliedChanges applied = merged(
         [&](const OSMObject& object) {
           if (clip && !clip->keeps(object)) return false;
@@ -465,7 +480,8 @@ AppliedChanges apply_changes(const std::string& base_path, std::span<const std::
           auto& gone = copy.get<OSMObject>(0);
           gone.set_visible(false);
           put(gone);
-        });
+        },
+        changed);
     applied.cleaned_texts = base.cleaned();
     try {
       writer->close();

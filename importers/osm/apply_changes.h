@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,6 +11,10 @@
 #include "importers/osm/clip_polygon.h"
 
 namespace blockrand::importers::osm {
+
+/// Objects before and after (changed_objects.h), for the store that comes after (update_store.h).
+class ChangedObjects;
+std::shared_ptr<ChangedObjects> no_changed_objects();
 
 /// Whether a file's name says that it holds changes: .osc, .osc.gz, .osc.bz2, in small letters or capitals.
 bool is_change_file(std::string_view path);
@@ -37,9 +42,10 @@ std::optional<std::uint64_t> replication_sequence(const std::string& path);
 ///              of these, multipolygons and buildings among them with all of their nodes and ways; deletions of what the base had. A way that
 ///              grows into it later may lack nodes that were outside before: the next full extract brings them. Memory: 1 bit for
 ///              each id near a kept one, and members of all relations
+/// \param changed  null, or gets every object that is another one in `out` than in the base
 /// \throws base::InputError   a file is missing, damaged, cut off, or not what its name says
 /// \throws base::OutputError  `out` cannot be written; nothing is left of it then
 AppliedChanges apply_changes(const std::string& base, std::span<const std::string> changes, const std::string& out,
-                             const ClipPolygon* clip = nullptr);
+                             const ClipPolygon* clip = nullptr, ChangedObjects* changed = nullptr);
 
 }  // namespace blockrand::importers::osm

@@ -18,7 +18,7 @@ struct StoreFigures {
   std::uint64_t nodes = 0, ways = 0, relations = 0;   ///< in the extract
   std::uint64_t missing_nodes = 0, missing_ways = 0;  ///< referenced by a kept object, not in the extract
   std::string data_time;                              ///< newest time of the extract's objects, ISO 8601; or empty
-  std::string sha256;                                 ///< of all kept objects in the order of type and id
+  std::string sha256;                                 ///< of all kept objects, cell by cell in the order of type and id
   std::uint64_t bytes = 0;                            ///< of the store on disk
   std::uint64_t node_bytes = 0;                       ///< of the places of nodes while it was written
   bool cleaned_texts = false;                         ///< NUL characters were replaced
@@ -43,6 +43,7 @@ struct ChangedObject {
   bool building = false;        ///< a building or a part of one, or a relation of these
   bool network = false;         ///< may bound blocks: a street, railway, water or covered way
   bool placeless = false;       ///< a version has no known position at all
+  bool look_only = false;       ///< a building whose height, storeys, roof, colours, materials or year alone differ
   std::array<double, 4> box{};  ///< west, south, east, north in degrees
 };
 
@@ -62,8 +63,8 @@ bool write_store(const std::string& extract, const std::string& folder);
 /// What spans more cannot be what stands around one area: what holds the area as a whole is told to it (RegionFacts::areas). Degrees.
 inline constexpr double kWholeSpan = 1.0;
 
-/// The files of a store, below its folder: objects, index.
-inline constexpr std::array<const char*, 2> kStoreFiles{"objects", "index"};
+/// The files of a store, below its folder. The last two serve the store that comes after it (update_store.h).
+inline constexpr std::array<const char*, 4> kStoreFiles{"objects", "index", "upkeep", "nodes"};
 
 /// A store that is read. Each piece is checked as it is read.
 class ExtractStore {

@@ -45,7 +45,11 @@ NodeFile::NodeFile(std::string path) : path_(std::move(path)), out_(path_, std::
   if (!out_) throw base::OutputError(path_ + ": cannot be written: " + std::strerror(errno));
 }
 
+NodeFile::NodeFile(std::string path, std::vector<std::pair<std::uint64_t, std::uint64_t>> blocks, std::uint64_t bytes)
+    : path_(std::move(path)), kept_(true), in_(path_, std::ios::binary), blocks_(std::move(blocks)), bytes_(bytes) {}
+
 NodeFile::~NodeFile() {
+  if (kept_) return;
   std::error_code error;
   std::filesystem::remove(path_, error);
 }

@@ -22,7 +22,9 @@ class NodeFile {
 
   /// \throws base::OutputError
   explicit NodeFile(std::string path);
-  /// Removes the file.
+  /// One that was kept. \param blocks, bytes  as it was said when it was
+  NodeFile(std::string path, std::vector<std::pair<std::uint64_t, std::uint64_t>> blocks, std::uint64_t bytes);
+  /// Removes the file, unless it is kept.
   ~NodeFile();
   NodeFile(const NodeFile&) = delete;
   NodeFile& operator=(const NodeFile&) = delete;
@@ -36,12 +38,19 @@ class NodeFile {
 
   std::uint64_t bytes() const { return bytes_; }
 
+  /// Leaves the file when it is done. \returns  first key and place of each block
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> keep() {
+    kept_ = true;
+    return blocks_;
+  }
+
  private:
   using Block = std::vector<std::pair<std::uint64_t, model::Location>>;
   void write_block();
   const Block& block(std::size_t index);
 
   std::string path_;
+  bool kept_ = false;
   std::ofstream out_;
   std::ifstream in_;
   Block pending_;

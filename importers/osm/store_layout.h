@@ -4,9 +4,14 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <osmium/osm/object.hpp>
+#include <set>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "importers/osm/extract_store.h"
@@ -62,6 +67,47 @@ struct Index {
   std::vector<CellEntry> cells;  ///< ascending; the placeless under nowhere()
 };
 
+/// A relation that is kept.
+struct StoredRelation {
+  std::vector<std::int64_t> ways, relations;  ///< members
+  std::set<model::TileId> cells;
+  Box box;    ///< of its ways
+  Box reach;  ///< of its relations as well, and of those that it is a member of
+};
+/// A way that relations have.
+struct MemberWay {
+  Box box;
+  bool there = false;
+  std::set<model::TileId> cells;
+};
+/// One that lies with its relations as well.
+struct LateWay {
+  std::set<model::TileId> cells;
+  Box box;  ///< of its relations
+  friend bool operator==(const LateWay&, const LateWay&) = default;
+};
+
+/// Relations with what they have, by id.
+struct Members {
+  std::map<std::int64_t, StoredRelation> relations;
+  std::map<std::int64_t, MemberWay> ways;
+  std::map<std::int64_t, LateWay> late;
+  /// Says of all relations where they lie, and which ways lie with them, when all is known of the ways.
+  void place();
+};
+
+/// What a store that comes after this one must know beside it (update_store.h).
+struct Upkeep {
+  Members members;
+  std::map<std::int64_t, std::uint32_t> missing_nodes;  ///< how often ways name them
+  std::uint32_t newest = 0;                             ///< time of an object, seconds since 1970
+  std::uint64_t unused = 0;                             ///< bytes of `objects` that no cell names
+  /// `nodes`, as NodeFile has it, and what is otherwise since it was written: kMissing (raw_data.h) of those that are gone.
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> node_blocks;
+  std::uint64_t node_bytes = 0;
+  std::map<std::int64_t, model::Location> moved;
+};
+
 /// Levels of cells: the finest is 1.5 by 2.4 km at 51 degrees, the coarsest holds kWholeSpan.
 constexpr int kFinest = 13, kCoarsest = 7;
 /// Of pieces of lines that span more than kWholeSpan, and their length in degrees, which is less than half a cell.
@@ -76,6 +122,21 @@ inline double size_of(int level) { return 180.0 / static_cast<double>(1u << leve
 std::uint32_t crc_of(std::string_view bytes);
 inline std::string objects_path(const std::string& folder) { return folder + "/" + kStoreFiles[0]; }
 inline std::string index_path(const std::string& folder) { return folder + "/" + kStoreFiles[1]; }
+inline std::string upkeep_path(const std::string& folder) { return folder + "/" + kStoreFiles[2]; }
+inline std::string nodes_path(const std::string& folder) { return folder + "/" + kStoreFiles[3]; }
+
+/// A packed value and its hash. \throws base::OutputError
+void write_packed(const std::string& path, std::string bytes);
+/// Nothing where it is missing or damaged.
+std::optional<std::string> read_packed(const std::string& path);
+
+/// The hash of all cells, which is that of the store.
+std::string sha256_of_cells(std::span<const CellEntry> cells);
+
+/// The cell of a box that spans at most kWholeSpan: the box lies within half a cell around it.
+model::TileId home_of(const Box& box);
+/// Where a way is: in the cell of its box, or where a longer one leads. \param line  its known places
+void find_way(const Box& box, std::span<const model::Location> line, std::set<model::TileId>& cells);
 
 /// Degrees of a unit of Box.
 constexpr double kUnit = 1e-7;
@@ -84,5 +145,7 @@ constexpr double kUnit = 1e-7;
 Box box_of(const std::array<double, 4>& window);
 /// What an object says, as bytes: without what lies between fields in memory.
 std::string told(const osmium::OSMObject& object);
+/// The same without version, time and tags that say what a building is like, not where anything is (extract_store.h).
+std::string told_place(const osmium::OSMObject& object);
 
 }  // namespace blockrand::importers::osm::store_layout

@@ -35,33 +35,13 @@ using osmium::OSMObject;
 
 constexpr std::uint64_t kMostPending = 64'000'000;  // bytes of objects that wait for the disk
 
-/// The cell of a box that spans at most kWholeSpan: the box lies within half a cell around it.
-TileId home_of(const Box& box) {
-  int level = kFinest;
-  while (level > kCoarsest && box.span() > size_of(level)) --level;
-  const auto middle = [](std::int64_t a, std::int64_t b) { return static_cast<std::int32_t>((a + b) / 2); };
-  return georef::tile_of(model::Location{middle(box.west, box.east), middle(box.south, box.north)}, level);
-}
-
-/// The cells that a line leads through, which may go around the globe.
-void find_along(std::span<const model::Location> line, std::set<TileId>& out) {
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const model::Location a = line[i], b = line[std::min(i + 1, line.size() - 1)];
-    const double dx = static_cast<double>(b.lon) - a.lon, dy = static_cast<double>(b.lat) - a.lat;
-    const int pieces = 1 + static_cast<int>(kUnit * std::max(std::abs(dx), std::abs(dy)) / kLineStep);
-    for (int k = 0; k < pieces; ++k)
-      out.insert(georef::tile_of(model::Location{static_cast<std::int32_t>(a.lon + dx * (k + 0.5) / pieces),
-                                                 static_cast<std::int32_t>(a.lat + dy * (k + 0.5) / pieces)},
-                                 kLineLevel));
-  }
-}
-
 /// The store in the making.
 class StoreFiles {
  public:
   explicit StoreFiles(std::string folder) : folder_(std::move(folder)) {
     std::error_code error;
     fs::remove(index_path(folder_), error);
+    fs::remove(upkeep_path(folder_), error);
     fs::create_directories(folder_, error);
     if (error) throw base::OutputError(folder_ + ": cannot be made: " + error.message());
     out_.open(objects_path(folder_), std::ios::binary | std::ios::trunc);
@@ -71,7 +51,6 @@ class StoreFiles {
   /// \param box  of the object, and of what it is there for
   void add(const std::set<TileId>& cells, Kind kind, const OSMObject& object, const Box& box) {
     const std::string what = told(object);
-    if (kind != Kind::late_way) all_.add(what);
     const std::string_view bytes(reinterpret_cast<const char*>(object.data()), object.padded_size());
     for (const TileId& tile : cells) {
       Cell& cell = cells_[tile];
@@ -91,7 +70,6 @@ class StoreFiles {
     flush_all();
     out_.close();
     check();
-    index.figures.sha256 = all_.finish();
     index.figures.bytes = written_;
     for (auto& [tile, cell] : cells_) {
       CellEntry entry;
@@ -100,12 +78,8 @@ class StoreFiles {
       index.cells.push_back(std::move(entry));
     }
     index.placeless = !index.cells.empty() && index.cells.back().tile == nowhere();
-    std::string bytes = base::packed(index);
-    bytes += base::sha256_of(bytes);
-    std::ofstream out(index_path(folder_), std::ios::binary | std::ios::trunc);
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    out.close();
-    if (!out) throw base::OutputError(index_path(folder_) + ": cannot be written. Free some space");
+    index.figures.sha256 = sha256_of_cells(index.cells);
+    write_packed(index_path(folder_), base::packed(index));
   }
 
  private:
@@ -138,12 +112,12 @@ class StoreFiles {
   std::ofstream out_;
   std::uint64_t written_ = 0, pending_ = 0;
   std::map<TileId, Cell> cells_;
-  base::Sha256 all_;
 };
 
 class StoreWriter {
  public:
-  StoreWriter(OsmFile& file, const std::string& folder) : file_(file), nodes_(folder + ".nodes"), files_(folder) {}
+  StoreWriter(OsmFile& file, const std::string& folder)
+      : file_(file), folder_(folder), files_(folder), nodes_(nodes_path(folder)) {}
 
   bool write() {
     read_relations();
@@ -157,22 +131,6 @@ class StoreWriter {
   Index& index() { return index_; }
 
  private:
-  struct Relation {
-    std::vector<std::int64_t> ways, relations;
-    std::set<TileId> cells;
-    Box box;    ///< of its ways
-    Box reach;  ///< of its relations as well, and of those that it is a member of
-  };
-  struct LateWay {
-    std::set<TileId> cells;
-    Box box;  ///< of its relations
-  };
-  struct KnownWay {
-    Box box;
-    bool there = false;
-    std::set<TileId> cells;
-  };
-
   /// Counts it, and whether the file is in order.
   bool visit(const OSMObject& object, std::uint64_t& count) {
     const auto order = std::make_tuple(object.type(), object.id() >= 0, std::abs(object.id()));
@@ -190,9 +148,9 @@ class StoreWriter {
                      if (!visit(object, index_.figures.relations)) return;
                      const auto& relation = static_cast<const osmium::Relation&>(object);
                      if (!kept_as(relation, interest_of(model::OsmType::relation, object))) return;
-                     Relation& kept = relations_[object.id()];
+                     StoredRelation& kept = members_.relations[object.id()];
                      for (const osmium::RelationMember& m : relation.members()) {
-                       if (m.type() == osmium::item_type::way) kept.ways.push_back(m.ref()), boxes_[m.ref()];
+                       if (m.type() == osmium::item_type::way) kept.ways.push_back(m.ref()), members_.ways[m.ref()];
                        if (m.type() == osmium::item_type::relation) kept.relations.push_back(m.ref());
                      }
                    },
@@ -229,18 +187,8 @@ class StoreWriter {
     files_.add(cells_, Kind::node, object, box);
   }
 
-  /// Where a way is: in the cell of its box, or where a longer one leads.
-  void find_way(const Box& box, std::set<TileId>& cells) {
-    if (box.empty())
-      cells.insert(nowhere());
-    else if (box.span() <= kWholeSpan)
-      cells.insert(home_of(box));
-    else
-      find_along(line_, cells);
-  }
-
-  /// A copy with the places of its nodes, which are left in `line_`.
-  const osmium::Way& located(const OSMObject& object, Box& box) {
+  /// A copy with the places of its nodes, which are left in `line_`. \param counted  nodes that are missing count
+  const osmium::Way& located(const OSMObject& object, Box& box, bool counted) {
     line_.clear();
     copy_.clear();
     copy_.add_item(object);
@@ -249,7 +197,7 @@ class StoreWriter {
     for (osmium::NodeRef& node : way.nodes()) {
       const model::Location at = nodes_.find(node.ref());
       node.set_location({at.lon, at.lat});
-      if (at == kMissing) missing_nodes_.insert(node.ref());
+      if (at == kMissing && counted) ++missing_nodes_[node.ref()];
       if (!is_known(at)) continue;
       box.add(at);
       line_.push_back(at);
@@ -260,55 +208,26 @@ class StoreWriter {
   void read_way(const OSMObject& object) {
     const bool alive = visit(object, index_.figures.ways);
     const Interest interest = interest_of(model::OsmType::way, object);
-    const auto of_relation = boxes_.find(object.id());
-    if (!alive || (!is_kept(interest) && of_relation == boxes_.end())) return;
+    const auto of_relation = members_.ways.find(object.id());
+    if (!alive || (!is_kept(interest) && of_relation == members_.ways.end())) return;
     Box box;
-    const osmium::Way& way = located(object, box);
+    const osmium::Way& way = located(object, box, true);
     cells_.clear();
-    find_way(box, cells_);
-    if (of_relation != boxes_.end())
+    find_way(box, line_, cells_);
+    if (of_relation != members_.ways.end())
       of_relation->second.there = true, of_relation->second.box = box, of_relation->second.cells = cells_;
     files_.add(cells_, Kind::way, way, box);
   }
 
   void place_relations() {
-    for (auto& [id, r] : relations_)
-      for (const std::int64_t way : r.ways) r.box.add(boxes_[way].box);
-    for (auto& [id, r] : relations_) {
-      Box& box = r.reach;
-      box = r.box;
-      for (const std::int64_t member : r.relations)
-        if (const auto found = relations_.find(member); found != relations_.end()) box.add(found->second.box);
-      if (box.empty()) {
-        r.cells.insert(nowhere());
-      } else if (box.span() <= kWholeSpan) {
-        r.cells.insert(home_of(box));
-      } else {
-        for (const std::int64_t way : r.ways) r.cells.insert(boxes_[way].cells.begin(), boxes_[way].cells.end());
-      }
-    }
-    // Members of relations that are relations: buildings of parts that are multipolygons.
-    for (auto& [id, r] : relations_)
-      for (const std::int64_t member : r.relations)
-        if (const auto found = relations_.find(member); found != relations_.end())
-          found->second.cells.insert(r.cells.begin(), r.cells.end()), found->second.reach.add(r.reach);
-    for (const auto& [id, r] : relations_)
-      for (const std::int64_t way : r.ways) {
-        const KnownWay& known = boxes_[way];
-        if (!known.there) continue;
-        if (r.cells == known.cells && r.reach == known.box) continue;
-        // In its own cell it is found where its own box is: with the relation it is wherever that reaches.
-        LateWay& late = late_[way];
-        late.cells.insert(r.cells.begin(), r.cells.end());
-        late.box.add(r.reach);
-      }
+    members_.place();
     std::uint64_t again = 0;
     const std::uint32_t newest = newest_;
     file_.for_each(osmium::osm_entity_bits::relation,
                    [&](const OSMObject& object) {
                      if (!visit(object, again)) return;
-                     const auto found = relations_.find(object.id());
-                     if (found != relations_.end())
+                     const auto found = members_.relations.find(object.id());
+                     if (found != members_.relations.end())
                        files_.add(found->second.cells, Kind::relation, object, found->second.reach);
                    },
                    {});
@@ -316,14 +235,15 @@ class StoreWriter {
   }
 
   void write_late_ways() {
-    if (late_.empty()) return;
+    if (members_.late.empty()) return;
     file_.for_each(
         osmium::osm_entity_bits::way,
         [&](const OSMObject& object) {
-          const auto found = late_.find(object.id());
-          if (found == late_.end() || !object.visible() || file_.deleted_by_editor(object.type(), object.id())) return;
+          const auto found = members_.late.find(object.id());
+          if (found == members_.late.end() || !object.visible() || file_.deleted_by_editor(object.type(), object.id()))
+            return;
           Box own;
-          files_.add(found->second.cells, Kind::late_way, located(object, own), found->second.box);
+          files_.add(found->second.cells, Kind::late_way, located(object, own, false), found->second.box);
         },
         {});
   }
@@ -331,23 +251,26 @@ class StoreWriter {
   void finish() {
     StoreFigures& f = index_.figures;
     f.missing_nodes = missing_nodes_.size();
-    for (const auto& [way, known] : boxes_) f.missing_ways += !known.there;
+    for (const auto& [way, known] : members_.ways) f.missing_ways += !known.there;
     if (newest_ > 0) f.data_time = osmium::Timestamp(newest_).to_iso();
     f.node_bytes = nodes_.bytes();
+    Upkeep upkeep;
+    upkeep.members = std::move(members_), upkeep.missing_nodes = std::move(missing_nodes_), upkeep.newest = newest_;
+    upkeep.node_bytes = nodes_.bytes(), upkeep.node_blocks = nodes_.keep();
+    write_packed(upkeep_path(folder_), base::packed(upkeep));
     files_.finish(std::move(index_));
   }
 
   OsmFile& file_;
-  NodeFile nodes_;
+  std::string folder_;
   StoreFiles files_;
+  NodeFile nodes_;
   Index index_;
   bool sorted_ = true;
   std::optional<std::tuple<osmium::item_type, bool, std::int64_t>> last_;
   std::uint32_t newest_ = 0;
-  std::map<std::int64_t, Relation> relations_;
-  std::map<std::int64_t, KnownWay> boxes_;  ///< of ways that relations have
-  std::map<std::int64_t, LateWay> late_;    ///< by way
-  std::set<std::int64_t> missing_nodes_;
+  Members members_;
+  std::map<std::int64_t, std::uint32_t> missing_nodes_;
   std::vector<model::Location> line_;  ///< places of the nodes of the way at hand
   std::set<TileId> cells_;             ///< of the object at hand
   osmium::memory::Buffer copy_{1 << 16, osmium::memory::Buffer::auto_grow::yes};

@@ -39,7 +39,9 @@ AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
     const double beyond = std::max(change.network ? kNetworkReach : 0, change.kinds != 0 ? rules : 0);
     constexpr double kBent = 1;  // m: sides of the box of an object in the projection
     for (const auto& [tile, reach] : reaches)
-      if (reach.far.near(box, kBent) || reach.near.near(box, beyond + kBent)) tiles.insert(tile);
+      if (change.look_only ? reach.look.near(box, kBent)
+                           : reach.far.near(box, kBent) || reach.near.near(box, beyond + kBent))
+        tiles.insert(tile);
     // Tiles that may tell of it for the first time.
     const std::array<double, 4> here{std::max(change.box[0], own.west), std::max(change.box[1], own.south),
                                      std::min(change.box[2], own.east), std::min(change.box[3], own.north)};
@@ -54,7 +56,7 @@ AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
           tiles.insert(tile);
           const georef::GeoBox b = georef::bounds(tile);
           const geometry::PlanBox ground = projected_box({b.west, b.south, b.east, b.north}, projection);
-          needed.include(needed_around({ground, ground}, rules));
+          needed.include(needed_around({ground, ground, ground}, rules));
           needed.include(box);
         }
   }

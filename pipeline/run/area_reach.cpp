@@ -47,8 +47,13 @@ class Reaches {
     PlanBox measured = touched(styled, heard);
     measured.include(with_blocks(styled));
     TileReach reach;
+    // Tagged neighbours speak for houses without tags. Features of a house read no tags but its own (features.h).
+    reach.look = measured;
+    reach.look.include(grown(own, in_.neighbour_reach));
+    reach.look = with_rows(reach.look);
     // Features of houses: what stands around, and what that needs of its own surroundings.
     reach.near = with_blocks(touched(touched(measured, classify::kNearReach), context::kWallSegmentReach));
+    reach.near.include(reach.look);
     reach.far = asks_town_ ? grown(measured, kTownReach) : measured;
     reach.far.include(reach.near);
     reach.near = with_rows(reach.near), reach.far = with_rows(reach.far);

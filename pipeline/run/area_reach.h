@@ -16,6 +16,7 @@ namespace blockrand::run {
 struct TileReach {
   geometry::PlanBox near;  ///< what is measured, classified and built there counts: its blocks, its rows, its features
   geometry::PlanBox far;   ///< and, where something asks for them, outlines of what stands in the district cells around
+  geometry::PlanBox look;  ///< of what tags say of a building's look: heights, storeys, roofs, years (ChangedObject::look_only)
 };
 
 using AreaReach = std::map<model::TileId, TileReach>;
@@ -29,6 +30,7 @@ struct ReachInputs {
   const classify::Tables& tables;
   const districts::RuleSets& book;
   const TileChoice& area;
+  double neighbour_reach = 0;  ///< m, GenerateOptions
 };
 
 /// Of the wanted tiles of the area, with or without buildings.

@@ -336,7 +336,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
                                .rows = report.rows,
                                .area = *tile},
                               tile->only ? records_before(*part, cache.get()) : AreaRecord());
-    if (cache) note_reaches(*tile, {located, prepared, inputs.tables, inputs.rules.book, *tile}, tiles_here);
+    if (cache) note_reaches(*tile, {located, prepared, inputs.tables, inputs.rules.book, *tile, options.generate.neighbour_reach}, tiles_here);
     area = told_area(tiles_here, located.facts.coverage);
     report.rows = std::move(area->rows);
     record.data_sha256 = area->data_sha256, record.data_time = area->data_time, record.counts = area->counts;
@@ -400,9 +400,9 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
       .memo = memo ? &*memo : nullptr};
   const OpenOutputs open(output_context);
   if (area) note_shown(todo, open, tiles_here);
-  // Records are asked for again when the tiles are done; until then they take an eighth of the room.
+  // Records are asked for again when the tiles are done; until then they take an eighth of the room. Few tiles need less of it.
   std::string resting;
-  if (area) {
+  if (area && !tile->only) {
     resting = outputs::gzip(base::packed(std::exchange(tiles_here, {})), 1);
     base::give_memory_back();
   }
@@ -497,7 +497,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   progress.begin("documents", open.list.size() + 2);
   finish_outputs(open, sums.whole, account, record, progress);
   if (cache && part && !part->record_key.empty()) {
-    tiles_here = base::unpacked<AreaRecord>(outputs::gunzip(std::exchange(resting, {})));
+    if (!resting.empty()) tiles_here = base::unpacked<AreaRecord>(outputs::gunzip(std::exchange(resting, {})));
     for (auto& [tile, key] : keys_here) tiles_here[tile].key = std::move(key);
     cache->keep(kRecords, part->record_key, base::packed(tiles_here), {}, {});
     cache->keep(kReaches, part->record_key, base::packed(reaches_in(tiles_here)), {}, {});

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "importers/osm/apply_changes.h"
+#include "importers/osm/update_store.h"
 #include "pipeline/base/child_process.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/heap.h"
@@ -61,8 +62,9 @@ struct AreaOutcome {
   std::vector<std::string> unaccounted;
   std::string folder;
   std::vector<outputs::PartySide> open_walls;
-  bool in_part = false;   ///< only some tiles were looked into
-  std::string why_whole;  ///< why all were
+  bool in_part = false;    ///< only some tiles were looked into
+  bool too_small = false;  ///< that was not enough: nothing was built
+  std::string why_whole;   ///< why all were
 };
 
 AreaOutcome outcome_of(BuildSummary&& s) {
@@ -76,17 +78,33 @@ AreaOutcome outcome_of(BuildSummary&& s) {
           std::move(s.folder),
           std::move(s.open_walls),
           false,
+          false,
           {}};
 }
 
+/// The store of the data of an earlier build, and what is otherwise now.
+struct EarlierStore {
+  std::vector<std::string> files;  ///< in the order of kStoreFiles; empty: there is none
+  std::shared_ptr<const importers::osm::ChangedObjects> changes;
+};
+
 /// The extract as a store, sorted first where it is not. In a process of its own, so that its buffers are gone afterwards.
+/// \param written_because  gets why it was not made from the earlier one, which there is; empty: it was
 /// \returns  its peak of memory, bytes
-std::uint64_t divide(const BuildOptions& options, const std::string& work, base::Progress& progress) {
+std::uint64_t divide(const BuildOptions& options, const std::string& work, const EarlierStore& earlier,
+                     std::string& written_because, base::Progress& progress) {
   const base::ChildResult result = base::run_in_child(options.input, [&](base::Progress& child) {
     base::keep_memory_low();
     std::error_code error;
     fs::create_directories(work, error);
     const std::string store = work + "/store", sorted = work + "/sorted.osm.pbf";
+    std::string why;
+    if (!earlier.files.empty()) try {
+        why = importers::osm::update_store(earlier.files, *earlier.changes, options.input, store);
+        if (why.empty()) return why;
+      } catch (const base::InputError&) {
+        why = "it is damaged";
+      }
     if (!importers::osm::write_store(options.input, store)) {
       const importers::osm::AppliedChanges applied = importers::osm::apply_changes(options.input, {}, sorted);
       if (applied.cleaned_texts)
@@ -94,9 +112,10 @@ std::uint64_t divide(const BuildOptions& options, const std::string& work, base:
       if (!importers::osm::write_store(sorted, store)) throw std::logic_error("a sorted extract is not sorted");
       fs::remove(sorted, error);
     }
-    return std::string();
+    return why;
   });
   for (const std::string& warning : result.warnings) progress.warn(warning);
+  written_because = result.bytes;
   return result.peak_rss_bytes;
 }
 
@@ -153,7 +172,10 @@ class AreaBuild {
     { const BuildInputs inputs(options_); }  // what is wrong with them is told before the extract is read
     open_cache();
     progress_.begin("divide");
-    peak_ = divide(options_, work_, progress_);
+    const EarlierStore earlier = earlier_store();
+    peak_ = divide(options_, work_, earlier, written_because_, progress_);
+    if (earlier.files.empty())
+      written_because_ = options_.earlier.empty() ? "there is no build before" : no_store_because_;
     const ExtractStore store(work_ + "/store");
     if (store.figures().cleaned_texts)
       progress_.warn(told_input(options_) + ": NUL characters in its texts were replaced; reports do not repeat that");
@@ -259,8 +281,13 @@ class AreaBuild {
                                        : std::string("Smaller ones would hardly need less")));
     }
     jobs_ = std::max(1, workers / static_cast<int>(at_once_));
+    // Of an area that is looked into in part at most kMostOfAll (area_changes.cpp) is read, and few tiles are built.
+    constexpr std::size_t kPartsAtOnce = 2;
+    parts_at_once_ =
+        options_.memory_limit > 0 ? at_once_ : std::min<std::size_t>(static_cast<std::size_t>(workers), kPartsAtOnce);
   }
 
+  static constexpr std::string_view kStores = "stores";
   static std::string store_key(const std::string& data) {
     base::Packer key;
     key << program_identity() << data;
@@ -271,10 +298,26 @@ class AreaBuild {
     for (std::size_t i = 0; i < parts_.size(); ++i) why_whole_[i] = why;
   }
 
+  /// The kept store of the data of the earlier build.
+  std::optional<WorkCache::Found> kept_store() {
+    if (earlier_record_.is_null()) earlier_record_ = json_of(options_.earlier + "/build.json");
+    const Json data = earlier_record_.value("data", Json::object());
+    std::optional<WorkCache::Found> before = cache_->find(kStores, store_key(text_in(data, "sha256")));
+    return before && before->places.size() == importers::osm::kStoreFiles.size() ? std::move(before) : std::nullopt;
+  }
+
+  EarlierStore earlier_store() {
+    no_store_because_ = "the data came as a whole";
+    if (!options_.changes || !cache_ || options_.earlier.empty() || options_.settings.empty()) return {};
+    no_store_because_ = "the data of the earlier build are not kept";
+    const std::optional<WorkCache::Found> before = kept_store();
+    if (!before) return {};
+    return {before->places, options_.changes};
+  }
+
   /// What differs from the data of the earlier build, and which tiles it concerns. The store is kept for the next run.
   void find_changes(const ExtractStore& store, const georef::Projection& projection) {
     if (!cache_ || options_.settings.empty()) return;
-    constexpr std::string_view kStores = "stores";
     std::vector<base::PublishedFile> files;
     for (const char* name : importers::osm::kStoreFiles) {
       std::error_code error;
@@ -283,10 +326,8 @@ class AreaBuild {
     }
     cache_->keep(kStores, store_key(store.figures().sha256), {}, files, work_ + "/store");
     if (options_.earlier.empty()) return;
-    if (earlier_record_.is_null()) earlier_record_ = json_of(options_.earlier + "/build.json");
-    const Json data = earlier_record_.value("data", Json::object());
-    const std::optional<WorkCache::Found> before = cache_->find(kStores, store_key(text_in(data, "sha256")));
-    if (!before || before->places.size() != files.size()) return because("the data of the earlier build are not kept");
+    const std::optional<WorkCache::Found> before = kept_store();
+    if (!before) return because("the data of the earlier build are not kept");
     std::vector<importers::osm::ChangedObject> changes;
     try {
       changes = store.changes_since(ExtractStore(before->places[0], before->places[1]));
@@ -412,37 +453,56 @@ class AreaBuild {
     if (!options_.plan)
       check_free_space(options_, disk_bytes(usual_size(all - done), options_),
                        folder_.free_bytes());  // now, not when half of the areas are done
+    std::vector<std::size_t> whole, in_part;
+    for (const std::size_t i : todo) (looks_.contains(i) ? in_part : whole).push_back(i);
+    // Those of which little is looked into first: what is too little for them is looked into as a whole.
+    build_areas(in_part, parts_at_once_, done, whole);
+    std::ranges::sort(whole);
+    build_areas(whole, at_once_, done, whole);
+    summary_.store_bytes = store.figures().bytes;
+  }
+
+  /// \param todo       indices of parts
+  /// \param too_small  gets those whose looks found that they must be looked into as a whole
+  void build_areas(const std::vector<std::size_t> todo, std::size_t at_once, std::uint64_t& done,
+                   std::vector<std::size_t>& too_small) {
     BuildOptions of_area = named_;
     of_area.force = false;
-    of_area.jobs = jobs_;
+    of_area.jobs = std::max(1, base::worker_count(options_.jobs) / static_cast<int>(at_once));
     base::run_in_children(
-        todo.size(), at_once_,
+        todo.size(), at_once,
         [&](std::size_t t, base::Progress& child) {
-          base::keep_memory_low();
-          of_area.output = place_of(parts_[todo[t]].choice.id);
-          const AreaPart part = part_of(todo[t]);
-          std::string why_whole = why_whole_[todo[t]];
-          if (part.choice.only) try {
-              AreaOutcome outcome = outcome_of(build_area(of_area, part, child));
-              outcome.in_part = true;
-              return base::packed(outcome);
-            } catch (const WindowTooSmall& reason) {
-              why_whole = reason.what();
-            }
-          AreaOutcome outcome = outcome_of(build_area(of_area, parts_[todo[t]], child));
-          outcome.why_whole = std::move(why_whole);
+          const std::size_t i = todo[t];
+          const AreaPart part = part_of(i);
+          if (!part.choice.only) base::keep_memory_low();
+          of_area.output = place_of(part.choice.id);
+          AreaOutcome outcome;
+          try {
+            outcome = outcome_of(build_area(of_area, part, child));
+            outcome.in_part = part.choice.only.has_value();
+          } catch (const WindowTooSmall& reason) {
+            outcome.too_small = true, outcome.why_whole = reason.what();
+          }
           return base::packed(outcome);
         },
         [&](std::size_t t, base::ChildResult result) {
           note(result);
-          const TileId area = parts_[todo[t]].choice.id;
-          take(base::unpacked<AreaOutcome>(result.bytes), todo[t]);
+          const std::size_t i = todo[t];
+          AreaOutcome outcome = base::unpacked<AreaOutcome>(result.bytes);
+          if (outcome.too_small) {
+            looks_.erase(i);
+            why_whole_[i] = std::move(outcome.why_whole);
+            too_small.push_back(i);
+            return;
+          }
+          outcome.why_whole = why_whole_[i];
+          const TileId area = parts_[i].choice.id;
+          take(std::move(outcome), i);
           if (const auto objects = survey_.objects.find(area); objects != survey_.objects.end())
             done += objects->second;
           progress_.advance_to(done);
         },
         [&](std::size_t t) { return "area " + text_of(parts_[todo[t]].choice.id); });
-    summary_.store_bytes = store.figures().bytes;
   }
 
   void take(AreaOutcome&& outcome, std::size_t i) {
@@ -507,6 +567,10 @@ class AreaBuild {
     j["peak_rss_bytes"] = summary_.peak_rss_bytes;
     j["peak_rss_bytes_of_the_first_process"] = own_peak_;
     j["store_bytes"] = summary_.store_bytes;
+    if (written_because_.empty())
+      j["store"] = "brought up to date";
+    else
+      j["store_written_because"] = written_because_;
     j["areas"] = {{"all", parts_.size()}, {"taken_over", kept_}, {"at_once", at_once_}};
     j["tiles"] = {
         {"built", summary_.tiles_built}, {"kept", summary_.tiles_kept}, {"built_for", summary_.tiles_built_for}};
@@ -547,10 +611,11 @@ class AreaBuild {
   std::map<std::size_t, Look> looks_;  ///< by index of the part
   std::map<std::size_t, std::string> why_whole_;
   std::set<std::size_t> unconcerned_;  ///< parts in which nothing differs
-  std::size_t at_once_ = 1, kept_ = 0;
+  std::size_t at_once_ = 1, parts_at_once_ = 1, kept_ = 0;
   int jobs_ = 1;
   std::uint64_t peak_ = 0, own_peak_ = 0;
   double cpu_seconds_ = 0;
+  std::string written_because_, no_store_because_;  ///< the store, whole; see divide()
   std::set<std::string> told_;
   Json earlier_record_;
   std::vector<outputs::PartySide> open_walls_;  ///< of all areas
@@ -602,7 +667,8 @@ BuildSummary build_one_area(const BuildOptions& options, base::Progress& progres
       choose_area(parse_tile(options.area, "--area", kLowestArea), read_region_facts(options.pinned, options));
   of_area.area.clear(), of_area.pinned.clear();
   base::StagedFolder place(options.output + ".store", false, {.name = "store", .marker = "index"});
-  divide(options, place.staging_path(), progress);
+  std::string because;
+  divide(options, place.staging_path(), {}, because, progress);
   const ExtractStore store(place.staging_path() + "/store");
   std::ifstream file(options.pinned, std::ios::binary);
   const Json pinned = Json::parse(file, nullptr, false);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -11,6 +12,10 @@
 #include "pipeline/footprints/repair/options.h"
 #include "pipeline/observation/options.h"
 #include "pipeline/outputs/options.h"
+
+namespace blockrand::importers::osm {
+class ChangedObjects;
+}
 
 namespace blockrand::run {
 
@@ -24,9 +29,11 @@ struct BuildOptions {
   std::optional<std::array<double, 4>> bbox;  ///< west, south, east, north in degrees
   std::string tile;                           ///< "15/35207/25941": build this tile alone; needs `pinned`
   std::string pinned;                         ///< build.json of an earlier build of the extract: its CRS, its coverage
-  int areas = 0;                         ///< level of the quadtree whose tiles are built one by one; 0: all at once
-  std::string area;                      ///< "11/1093/805": build this one of them alone; needs `pinned`
-  std::string earlier;                   ///< a build in areas whose unchanged ones are taken over, or empty
+  int areas = 0;        ///< level of the quadtree whose tiles are built one by one; 0: all at once
+  std::string area;     ///< "11/1093/805": build this one of them alone; needs `pinned`
+  std::string earlier;  ///< a build in areas whose unchanged ones are taken over, or empty
+  /// What differs between the data of `earlier` and the input; null: nobody knows. Its store is brought up to date by it.
+  std::shared_ptr<const importers::osm::ChangedObjects> changes;
   std::string settings;                  ///< says whether a build of `earlier` had the same; of `update`
   std::int64_t memory_limit = 0;         ///< bytes for all areas in work; 0: one at a time
   std::string crs;                       ///< "EPSG:…"; empty: chosen from the extent

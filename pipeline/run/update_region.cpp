@@ -259,6 +259,7 @@ class Updater {
     build.input = data;
     build.output = (fs::temp_directory_path() / fmt::format("blockrand-{}.plan", ::getpid())).string();
     build.plan = true;
+    build.changes = changes_;
     const auto start = std::chrono::steady_clock::now();
     const BuildSummary planned = blockrand::run::build(build, progress_);
     summary_.tiles_built = planned.tiles_built, summary_.tiles_kept = planned.tiles_kept;
@@ -290,8 +291,9 @@ class Updater {
                                "Update from a full extract: blockrand update " + region_.path() + " EXTRACT.osm.pbf");
     }
     const std::optional<importers::osm::ClipPolygon> polygon = polygon_of(options_.region);
+    if (plan.extract.empty()) changes_ = importers::osm::no_changed_objects();
     const AppliedChanges applied =
-        importers::osm::apply_changes(base, plan.changes, path, polygon ? &*polygon : nullptr);
+        importers::osm::apply_changes(base, plan.changes, path, polygon ? &*polygon : nullptr, changes_.get());
     if (applied.cleaned_texts)
       progress_.warn(base + ": NUL characters in its texts were replaced; reports of builds do not repeat that");
     summary_.created = applied.created, summary_.modified = applied.modified, summary_.deleted = applied.deleted;
@@ -432,8 +434,9 @@ class Updater {
 
   UpdateSummary build_and_publish(std::optional<int> current, const DataState& fresh) {
     const int number = summary_.number;
-    const BuildSummary built =
-        blockrand::run::build(build_options_for(options_, region_, number, current, before_, fresh.areas), progress_);
+    BuildOptions build = build_options_for(options_, region_, number, current, before_, fresh.areas);
+    build.changes = changes_;
+    const BuildSummary built = blockrand::run::build(build, progress_);
     summary_.folder = region_.build(number);
     summary_.tiles_built = built.tiles_built, summary_.tiles_kept = built.tiles_kept;
     summary_.tiles_built_for = built.tiles_built_for;
@@ -497,6 +500,8 @@ class Updater {
   const UpdateOptions& options_;
   const RegionFolder& region_;
   base::Progress& progress_;
+  /// From the data of the published build to the new ones; null where these come as a whole.
+  std::shared_ptr<importers::osm::ChangedObjects> changes_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   UpdateSummary summary_;
   DataState before_;

@@ -40,12 +40,19 @@ struct Stored {
 };
 
 std::optional<std::string> read_all(const std::string& path) {
-  std::error_code error;
-  if (!fs::is_regular_file(fs::symlink_status(path, error))) return std::nullopt;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
-  std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  if (file.bad()) return std::nullopt;
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) return std::nullopt;
+  struct stat s {};
+  bool whole = ::fstat(descriptor, &s) == 0 && S_ISREG(s.st_mode);
+  std::string bytes(whole ? static_cast<std::size_t>(s.st_size) : 0, '\0');
+  for (std::size_t at = 0; whole && at < bytes.size();) {
+    const ssize_t n = ::read(descriptor, bytes.data() + at, bytes.size() - at);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) whole = false;
+    if (n > 0) at += static_cast<std::size_t>(n);
+  }
+  ::close(descriptor);
+  if (!whole) return std::nullopt;
   return bytes;
 }
 

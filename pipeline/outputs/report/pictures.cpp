@@ -346,30 +346,49 @@ PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, s
   return tile;
 }
 
-void Pictures::add(PictureTile&& tile) {
-  buildings_.insert(buildings_.end(), tile.buildings.begin(), tile.buildings.end());
-  tiles_.push_back(std::move(tile));
+PackedPictureTile pack_picture(const PictureTile& tile, bool named) {
+  base::Packer packer;
+  // Room at once: a text that grows has twice the room that it needs.
+  std::size_t room = 1000 + tile.buildings.size() * sizeof(PicturedBuilding);
+  for (const picture::Scene* scene : {&tile.scene, &tile.flat, &tile.detail})
+    room += scene->triangle_count() * sizeof(picture::Scene::Triangle) +
+            scene->faces().size() * sizeof(picture::Scene::Face) +
+            scene->blends().size() * sizeof(picture::Scene::Blend);
+  packer.bytes.reserve(room);
+  packer << tile;
+  PackedPictureTile packed{{}, tile.buildings.size(), std::move(packer.bytes)};
+  if (named) packed.sha256 = base::sha256_of(packed.bytes);
+  return packed;
+}
+
+void Pictures::add(PackedPictureTile&& tile) {
+  if (tile.buildings > 0) tiles_.push_back(std::move(tile));
 }
 
 void Pictures::join() {
+  std::vector<PictureTile> tiles;
+  for (PackedPictureTile& tile : tiles_) {
+    tiles.push_back(base::unpacked<PictureTile>(tile.bytes));
+    tile = {};
+  }
+  tiles_ = {};
   // Scenes that grew with each tile would be copied as often. `flat` and `detail` will get what lies in the ones before.
   const auto count = [&](picture::Scene PictureTile::*scene) {
-    return std::accumulate(tiles_.begin(), tiles_.end(), std::size_t{0},
+    return std::accumulate(tiles.begin(), tiles.end(), std::size_t{0},
                            [&](std::size_t n, const PictureTile& t) { return n + (t.*scene).triangle_count(); });
   };
   const std::size_t bodies = count(&PictureTile::scene) + kGroundTriangles;
   scene_.reserve(bodies);
   flat_.reserve(count(&PictureTile::flat) + bodies);
   detail_.reserve(count(&PictureTile::detail));
-  std::uint32_t first = 0;
-  for (PictureTile& tile : tiles_) {
+  for (PictureTile& tile : tiles) {
+    const auto first = static_cast<std::uint32_t>(buildings_.size());
     scene_.append(tile.scene, first);
     flat_.append(tile.flat, first);
     detail_.append(tile.detail, first);
-    first += static_cast<std::uint32_t>(tile.buildings.size());
+    buildings_.insert(buildings_.end(), tile.buildings.begin(), tile.buildings.end());
     tile = PictureTile();
   }
-  tiles_ = {};
 }
 
 /// One plane, or where the ground rises and falls a mesh through the grounds of the buildings.
@@ -424,12 +443,18 @@ std::string Pictures::note() const {
 }
 
 std::vector<outputs::ReportPicture> Pictures::take(int workers, const base::Memo* memo, std::string_view attribution) {
-  if (buildings_.empty()) return {};
-  join();
+  if (tiles_.empty()) return {};
   auto out = base::remembered<std::vector<outputs::ReportPicture>>(
-      memo, "pictures",
-      [&](base::Packer& packer) { packer << scene_ << flat_ << detail_ << buildings_ << plan_.spot << attribution; },
-      [&] { return shoot(workers, attribution); });
+      memo && !tiles_.front().sha256.empty() ? memo : nullptr, "pictures",
+      [&](base::Packer& packer) {
+        packer << plan_.spot << attribution;
+        for (const PackedPictureTile& tile : tiles_) packer << tile.sha256;
+      },
+      [&] {
+        join();
+        return shoot(workers, attribution);
+      });
+  tiles_ = {};
   scene_ = flat_ = detail_ = picture::Scene(plan_.origin);
   buildings_ = {};
   return out;

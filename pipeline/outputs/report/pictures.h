@@ -55,6 +55,16 @@ struct PictureTile {
   picture::Scene detail;  ///< of buildings at the densest spot: all of LoD3
 };
 
+/// A PictureTile packed, and what names it: pictures that an earlier run took of the same tiles are found without looking into them.
+struct PackedPictureTile {
+  std::string sha256;  ///< of `bytes`; empty where nobody asks
+  std::uint64_t buildings = 0;
+  std::string bytes;
+};
+
+/// \param named  whether to say its hash
+PackedPictureTile pack_picture(const PictureTile& tile, bool named);
+
 /// The bodies of a finished tile, with windows and doors as flat pieces of their walls where it has any; empty for a tile that is not pictured. Pure: safe for different tiles at the same
 /// time.
 /// \param shard  the tile's index
@@ -67,10 +77,10 @@ class Pictures {
       : plan_(plan), scene_(plan.origin), flat_(plan.origin), detail_(plan.origin) {}
 
   /// Takes a tile; call in tile order.
-  void add(PictureTile&& tile);
+  void add(PackedPictureTile&& tile);
   /// The pictures, on up to `workers` threads; none where no building has a solid. The same bytes for any number of
   /// threads. Leaves the collection empty, so that its memory is free.
-  /// \param memo         where those of an earlier run are found again; null: none
+  /// \param memo         where those of an earlier run are found again, if tiles are named; null: none
   /// \param attribution  for their corner
   std::vector<outputs::ReportPicture> take(int workers, const base::Memo* memo = nullptr,
                                            std::string_view attribution = base::kAttribution);
@@ -83,7 +93,7 @@ class Pictures {
   void lay_ground();
   std::vector<outputs::ReportPicture> shoot(int workers, std::string_view attribution);
   PicturePlan plan_;
-  std::vector<PictureTile> tiles_;  ///< as they came
+  std::vector<PackedPictureTile> tiles_;  ///< as they came
   picture::Scene scene_, flat_, detail_;
   std::vector<PicturedBuilding> buildings_;
 };

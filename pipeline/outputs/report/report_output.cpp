@@ -163,7 +163,7 @@ constexpr const char* kTable = "buildings.csv";
 struct TileShare {
   ReportTile page;
   std::string table;  ///< lines of buildings.csv
-  PictureTile picture;
+  PackedPictureTile picture;
   picture::PlanTile plan;
 };
 
@@ -182,7 +182,7 @@ class ReportOutput : public OutputOf<TileShare> {
     TileShare share;
     share.page = report_tile(tile.region);
     share.table = csv_lines(tile.region, share.page, context_.projection);
-    share.picture = picture_tile(tile.region, picture_plan_, tile.shard);
+    share.picture = pack_picture(picture_tile(tile.region, picture_plan_, tile.shard), context_.memo != nullptr);
     if (plan_choice_.chosen[tile.shard]) share.plan = picture::plan_tile(tile.region);
     return share;
   }

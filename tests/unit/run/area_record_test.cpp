@@ -81,7 +81,7 @@ TEST(AreaReach, WindowsHoldWhatIsNeeded) {
   const georef::Crs crs = georef::open_crs("EPSG:25833", bounds);
   const georef::Projection projection(crs, bounds);
   const geometry::PlanBox tile = projected_box({bounds.west, bounds.south, bounds.east, bounds.north}, projection);
-  TileReach reach{tile, tile};
+  TileReach reach{tile, tile, tile};
   reach.far.maximum.x += 700;
   const geometry::PlanBox needed = needed_around(reach, 0);
   EXPECT_EQ(needed.minimum.x, tile.minimum.x - kNetworkReach);

@@ -46,7 +46,6 @@ TEST(ExtractStore, AreasOfRealExtractsReadAsTheWholeSays) {
       apply_changes(entry.path().string(), {}, extract);
       ASSERT_TRUE(write_store(extract, folder.path("store")));
     }
-    EXPECT_FALSE(fs::exists(folder.path("store.nodes")));
     const ExtractStore store(folder.path("store"));
     const model::Extract whole = read_extract(extract);
     EXPECT_EQ(store.figures().nodes, whole.counts.nodes);
@@ -162,14 +161,15 @@ TEST(ExtractStore, AreasHashWhatTheyHold) {
 TEST(ExtractStore, ChangesAreTheObjectsThatDiffer) {
   const TempFolder folder;
   struct Edit {
-    std::string use = "yes";
+    std::string use = "yes", storeys = "3";
     double x = 0;  ///< m, of the third building
     bool street = true, park = true;
   };
   const auto stored = [&](const std::string& name, const Edit& edit) {
     OsmText text;
     text.corners(1, 0, 0, 1).corners(11, 9000, 0, 1).corners(21, 20 + edit.x, 0, 1).corners(31, 40, 0, 1);
-    text.way(1, {1, 2, 3, 4, 1}, {{"building", "yes"}}).way(2, {11, 12, 13, 14, 11}, {{"building", edit.use}});
+    text.way(1, {1, 2, 3, 4, 1}, {{"building", "yes"}})
+        .way(2, {11, 12, 13, 14, 11}, {{"building", edit.use}, {"building:levels", edit.storeys}});
     text.way(3, {21, 22, 23, 24, 21}, {{"building", "yes"}});
     text.way(4, {1, 11}, {{"highway", edit.street ? "residential" : "primary"}});
     text.way(5, edit.park ? std::vector<std::int64_t>{31, 32, 33, 34, 31} : std::vector<std::int64_t>{31, 32, 33, 31});
@@ -188,9 +188,13 @@ TEST(ExtractStore, ChangesAreTheObjectsThatDiffer) {
   ASSERT_EQ(retagged.size(), 1u);
   EXPECT_TRUE(retagged.at("w2").building);
   EXPECT_FALSE(retagged.at("w2").network);
+  EXPECT_FALSE(retagged.at("w2").look_only);
+  EXPECT_TRUE(changed({.storeys = "4"}).at("w2").look_only);
+  EXPECT_FALSE(changed({.use = "shed", .storeys = "4"}).at("w2").look_only);
   // Both places of what was moved: in one cell together, else apart.
   const auto moved = changed({.x = 10});
   ASSERT_EQ(moved.size(), 1u);
+  EXPECT_FALSE(moved.at("w3").look_only);
   EXPECT_NEAR(moved.at("w3").box[2] - moved.at("w3").box[0], 11e-4, 1e-6);
   const std::vector<ChangedObject> far = stored("now", {.x = 3000}).changes_since(before);
   ASSERT_EQ(far.size(), 2u);
