@@ -144,7 +144,7 @@ std::vector<ChangedObject> ExtractStore::changes_since(const ExtractStore& befor
     for (const model::FeatureKind kind : {street, railway, water, passage})
       changed.network = changed.network || (changed.kinds & static_cast<std::uint32_t>(kind)) != 0;
     changed.look_only = both.size() == 2 && (*both.begin())->place == (*(both.end() - 1))->place && changed.building &&
-                        !changed.network && changed.kinds == 0;
+                        !changed.network;
     if (!box.empty())
       changed.box = {kUnit * static_cast<double>(box.west), kUnit * static_cast<double>(box.south),
                      kUnit * static_cast<double>(box.east), kUnit * static_cast<double>(box.north)};

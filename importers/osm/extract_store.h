@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "importers/osm/read_extract.h"
@@ -46,6 +47,9 @@ struct ChangedObject {
   bool look_only = false;       ///< a building whose height, storeys, roof, colours, materials or year alone differ
   std::array<double, 4> box{};  ///< west, south, east, north in degrees
 };
+
+/// Whether a key says of a building no more than how it looks (ChangedObject::look_only).
+bool tells_look(std::string_view key);
 
 /// Writes a store in one pass over the nodes and two over ways and relations. An object lies in one cell, the smallest whose size is
 /// that of its box or more, and is found in half a cell around it; a relation has all of its ways and relations with it. What spans more

@@ -62,35 +62,6 @@ void pack_places(const OSMObject& object, base::Packer& p) {
   }
 }
 
-/// Heights, storeys, roofs, colours, materials and years.
-bool is_look(std::string_view key) {
-  using namespace model::osm_key;
-  constexpr std::array kKeys = {kHeight,
-                                kBuildingHeight,
-                                kEstHeight,
-                                kBuildingLevels,
-                                kLevels,
-                                kRoofLevels,
-                                kRoofShape,
-                                kRoofHeight,
-                                kRoofAngle,
-                                kRoofDirection,
-                                kRoofMaterial,
-                                kRoofColour,
-                                kRoofOrientation,
-                                kBuildingRoofLevels,
-                                kBuildingRoofShape,
-                                kStartDate,
-                                kBuildingMaterial,
-                                kBuildingColour,
-                                kBuildingFacadeMaterial,
-                                kBuildingFacadeColour,
-                                kFacadeColour,
-                                kFacadeMaterial,
-                                kBuildingArchitecture};
-  return std::ranges::find(kKeys, key) != kKeys.end();
-}
-
 }  // namespace
 
 model::TileId home_of(const Box& box) {
@@ -188,7 +159,7 @@ std::string told_place(const OSMObject& object) {
   base::Packer p;
   p << static_cast<int>(object.type()) << object.id();
   for_each_tag(object, [&](std::string_view key, std::string_view value) {
-    if (!is_look(key)) p << std::string(key) << std::string(value);
+    if (!tells_look(key)) p << std::string(key) << std::string(value);
   });
   p << std::string();
   pack_places(object, p);
@@ -196,3 +167,35 @@ std::string told_place(const OSMObject& object) {
 }
 
 }  // namespace blockrand::importers::osm::store_layout
+
+namespace blockrand::importers::osm {
+
+bool tells_look(std::string_view key) {
+  using namespace model::osm_key;
+  constexpr std::array kKeys = {kHeight,
+                                kBuildingHeight,
+                                kEstHeight,
+                                kBuildingLevels,
+                                kLevels,
+                                kRoofLevels,
+                                kRoofShape,
+                                kRoofHeight,
+                                kRoofAngle,
+                                kRoofDirection,
+                                kRoofMaterial,
+                                kRoofColour,
+                                kRoofOrientation,
+                                kBuildingRoofLevels,
+                                kBuildingRoofShape,
+                                kStartDate,
+                                kBuildingMaterial,
+                                kBuildingColour,
+                                kBuildingFacadeMaterial,
+                                kBuildingFacadeColour,
+                                kFacadeColour,
+                                kFacadeMaterial,
+                                kBuildingArchitecture};
+  return std::ranges::find(kKeys, key) != kKeys.end();
+}
+
+}  // namespace blockrand::importers::osm

@@ -24,7 +24,7 @@ TileId tile_at(double lon, double lat) {
 }  // namespace
 
 AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
-                            std::span<const importers::osm::ChangedObject> changes, double rules,
+                            std::span<const importers::osm::ChangedObject> changes, const RulesReach& rules,
                             const georef::Projection& projection) {
   std::set<TileId> tiles;
   geometry::PlanBox needed;
@@ -36,11 +36,12 @@ AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
     // Somewhere else: no tile here reaches further than what is read for the area.
     if (change.box[0] > all[2] || change.box[2] < all[0] || change.box[1] > all[3] || change.box[3] < all[1]) continue;
     const geometry::PlanBox box = projected_box(change.box, projection);
-    const double beyond = std::max(change.network ? kNetworkReach : 0, change.kinds != 0 ? rules : 0);
+    const double beyond = std::max(change.network ? kNetworkReach : 0, change.kinds != 0 ? rules.metres : 0);
+    const bool look_only = change.look_only && !(rules.asks_look && change.kinds != 0);
     constexpr double kBent = 1;  // m: sides of the box of an object in the projection
     for (const auto& [tile, reach] : reaches)
-      if (change.look_only ? reach.look.near(box, kBent)
-                           : reach.far.near(box, kBent) || reach.near.near(box, beyond + kBent))
+      if (look_only ? reach.look.near(box, kBent)
+                    : (change.building && reach.far.near(box, kBent)) || reach.near.near(box, beyond + kBent))
         tiles.insert(tile);
     // Tiles that may tell of it for the first time.
     const std::array<double, 4> here{std::max(change.box[0], own.west), std::max(change.box[1], own.south),
@@ -56,14 +57,15 @@ AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
           tiles.insert(tile);
           const georef::GeoBox b = georef::bounds(tile);
           const geometry::PlanBox ground = projected_box({b.west, b.south, b.east, b.north}, projection);
-          needed.include(needed_around({ground, ground, ground}, rules));
+          const CellRuns alone{{}, ground};
+          needed.include(needed_around({alone, alone, alone}, rules.metres));
           needed.include(box);
         }
   }
   if (tiles.empty()) return {};
   for (const TileId& tile : tiles)
     if (const auto reach = reaches.find(tile); reach != reaches.end())
-      needed.include(needed_around(reach->second, rules));
+      needed.include(needed_around(reach->second, rules.metres));
   // Outlines that changed may reach a little further than before.
   constexpr double kMore = 300;  // m
   needed.minimum = {needed.minimum.x - kMore, needed.minimum.y - kMore};

@@ -19,10 +19,15 @@ struct AreaChanges {
   std::string why_whole;           ///< not empty: all tiles are to be looked into, and why
 };
 
+/// What district rules ask for beyond a tile.
+struct RulesReach {
+  double metres = 0;       ///< how far they look at most (rules_reach)
+  bool asks_look = false;  ///< rules_ask_look
+};
+
 /// \param reaches  of all tiles of the area, as they were before the changes
-/// \param rules    m, how far district rules look at most (rules_reach)
 AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
-                            std::span<const importers::osm::ChangedObject> changes, double rules,
+                            std::span<const importers::osm::ChangedObject> changes, const RulesReach& rules,
                             const georef::Projection& projection);
 
 }  // namespace blockrand::run

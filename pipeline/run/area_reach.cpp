@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "importers/osm/extract_store.h"
 #include "pipeline/georef/tiles.h"
 #include "styles/districts/read_rule_set.h"
 
@@ -27,85 +28,114 @@ constexpr double kTownReach = 3 * context::kCellSize;
 
 class Reaches {
  public:
-  explicit Reaches(const ReachInputs& in) : in_(in), store_(in.prepared.repaired.footprints) {
-    houses_ = footprints::index_of(store_);
-    rows_ = geometry::BoxIndex(in_.prepared.repaired.row_boxes);
-    std::vector<PlanBox> boxes;
-    for (const context::Block& block : in_.prepared.context.blocks)
-      boxes.push_back(block.too_large ? PlanBox() : geometry::box_of(block.polygon.outer.points));
-    blocks_ = geometry::BoxIndex(std::move(boxes));
-  }
-
-  /// \param own  what lies in the tile, as mapped and as repaired
-  TileReach reach(const PlanBox& own) const {
-    const classify::Tables& tables = in_.tables;
-    PlanBox styled = touched(with_blocks(own), kBeside);
-    for (int round = 0; round < std::max(1, tables.smoothing.rounds); ++round)
-      styled = touched(styled, classify::kNearReach);
-    const double heard = std::max({classify::kNearReach, tables.era_votes.reach, tables.storeys_votes.reach,
-                                   tables.roof_votes.reach, tables.non_houses.equal_radius});
-    PlanBox measured = touched(styled, heard);
-    measured.include(with_blocks(styled));
-    TileReach reach;
-    // Tagged neighbours speak for houses without tags. Features of a house read no tags but its own (features.h).
-    reach.look = measured;
-    reach.look.include(grown(own, in_.neighbour_reach));
-    reach.look = with_rows(reach.look);
-    // Features of houses: what stands around, and what that needs of its own surroundings.
-    reach.near = with_blocks(touched(touched(measured, classify::kNearReach), context::kWallSegmentReach));
-    reach.near.include(reach.look);
-    reach.far = asks_town_ ? grown(measured, kTownReach) : measured;
-    reach.far.include(reach.near);
-    reach.near = with_rows(reach.near), reach.far = with_rows(reach.far);
-    return reach;
-  }
-
- private:
-  /// What reaches out of a box crosses one of its sides.
-  template <class Take>
-  static void crossing(const geometry::BoxIndex& index, const PlanBox& box, const Take& take) {
-    if (box.empty()) return;
-    const auto [x0, y0] = box.minimum;
-    const auto [x1, y1] = box.maximum;
-    for (const auto& [from, to] :
-         {std::pair(Point2{x0, y0}, Point2{x1, y0}), std::pair(Point2{x0, y1}, Point2{x1, y1}),
-          std::pair(Point2{x0, y0}, Point2{x0, y1}), std::pair(Point2{x1, y0}, Point2{x1, y1})}) {
-      PlanBox side;
-      side.include(from), side.include(to);
-      for (const std::uint32_t i : index.near(side, 0)) take(i);
+  explicit Reaches(const ReachInputs& in, std::span<const PlanBox> own)
+      : in_(in), store_(in.prepared.repaired.footprints) {
+    PlanBox all;
+    for (const PlanBox& box : own) all.include(box);
+    for (std::uint32_t b = 0; b < store_.size(); ++b) all.include(store_[b].box);
+    // What is grown reaches no further beyond what lies there.
+    constexpr double kMargin = 2000;  // m
+    extent_ = cells_of(grown(all, kMargin));
+    width_ = static_cast<std::size_t>(extent_.x1 - extent_.x0) + 1;
+    const std::size_t count = extent_.empty() ? 0 : width_ * (static_cast<std::size_t>(extent_.y1 - extent_.y0) + 1);
+    outlines_.resize(count), rows_.resize(count), blocks_.resize(count);
+    const context::ContextExtract& context = in.prepared.context;
+    for (const context::Block& block : context.blocks)
+      block_boxes_.push_back(block.too_large ? PlanBox() : geometry::box_of(block.polygon.outer.points));
+    const std::vector<PlanBox>& row_boxes = in.prepared.repaired.row_boxes;
+    for (std::uint32_t b = 0; b < store_.size(); ++b) {
+      const CellRange range = cells_of(store_[b].box);
+      if (range.empty()) continue;
+      const std::uint32_t block = context.block_of[b];
+      const CellRange row = b < row_boxes.size() ? cells_of(row_boxes[b]) : CellRange();
+      for (std::int32_t y = range.y0; y <= range.y1; ++y)
+        for (std::int32_t x = range.x0; x <= range.x1; ++x) {
+          const std::size_t cell = at(x, y);
+          outlines_[cell].include(range), rows_[cell].include(row);
+          if (block == model::kNoIndex || block_boxes_[block].empty()) continue;
+          std::vector<std::uint32_t>& here = blocks_[cell];
+          if (std::ranges::find(here, block) == here.end()) here.push_back(block);
+        }
     }
   }
 
-  /// The box grown, and the buildings that are touched then.
-  PlanBox touched(const PlanBox& box, double distance) const {
-    const PlanBox around = grown(box, distance);
-    PlanBox out = around;
-    crossing(houses_, around, [&](std::uint32_t b) { out.include(store_[b].box); });
-    return out;
+  /// \param own  what lies in the tile, as mapped and as repaired
+  TileReach reach(const PlanBox& own) {
+    const classify::Tables& tables = in_.tables;
+    const double heard = std::max({classify::kNearReach, tables.era_votes.reach, tables.storeys_votes.reach,
+                                   tables.roof_votes.reach, tables.non_houses.equal_radius});
+    PlanCells mine(extent_);
+    mine.include(own);
+    // Tagged neighbours speak for houses without tags. What is measured of a house reads no tags but its own (features.h).
+    PlanCells look = mine;
+    touch(look, kBeside);
+    PlanCells styled = mine;
+    add_blocks(styled);
+    touch(styled, kBeside);
+    for (int round = 0; round < std::max(1, tables.smoothing.rounds); ++round)
+      touch(look, classify::kNearReach), touch(styled, classify::kNearReach);
+    touch(look, heard);
+    PlanCells tagged = mine;
+    add(rows_, tagged);
+    touch(tagged, std::max(in_.neighbour_reach, context::kWallSegmentReach));
+    look.include(tagged);
+
+    PlanCells measured = styled;
+    touch(measured, heard);
+    add_blocks(styled);
+    measured.include(styled);
+    PlanCells far = measured;
+    if (asks_town_) far.grow(kTownReach);
+    // Features of houses: what stands around, and what that needs of its own surroundings.
+    PlanCells near = std::move(measured);
+    touch(near, classify::kNearReach);
+    touch(near, context::kWallSegmentReach);
+    add_blocks(near);
+    near.include(look);
+    far.include(near);
+    add(rows_, near), add(rows_, far);
+    return {near.runs(), far.runs(), look.runs()};
   }
-  /// And the blocks of its buildings.
-  PlanBox with_blocks(const PlanBox& box) const {
-    PlanBox out = box;
-    crossing(blocks_, box, [&](std::uint32_t block) {
-      const std::vector<std::uint32_t>& buildings = in_.prepared.context.figures[block].buildings;
-      if (std::ranges::any_of(buildings, [&](std::uint32_t b) { return store_[b].box.near(box, 0); }))
-        out.include(blocks_.box(block));
-    });
-    return out;
+
+ private:
+  std::size_t at(std::int32_t x, std::int32_t y) const {
+    return static_cast<std::size_t>(y - extent_.y0) * width_ + static_cast<std::size_t>(x - extent_.x0);
   }
-  /// And their rows.
-  PlanBox with_rows(const PlanBox& box) const {
-    PlanBox out = box;
-    crossing(rows_, box, [&](std::uint32_t b) {
-      if (store_[b].box.near(box, 0)) out.include(rows_.box(b));
+  /// What reaches out of each square.
+  void add(const std::vector<CellRange>& ranges, PlanCells& cells) const {
+    std::vector<CellRange> more;
+    cells.for_each([&](std::int32_t x, std::int32_t y) {
+      const CellRange& range = ranges[at(x, y)];
+      if (!range.empty() && (range.x0 != range.x1 || range.y0 != range.y1)) more.push_back(range);
     });
-    return out;
+    for (const CellRange& range : more) cells.include(range);
+  }
+  /// Grown, and the buildings that are touched then.
+  void touch(PlanCells& cells, double distance) const {
+    cells.grow(distance);
+    add(outlines_, cells);
+  }
+  /// The blocks of its buildings.
+  void add_blocks(PlanCells& cells) {
+    std::vector<std::uint32_t> found;
+    cells.for_each([&](std::int32_t x, std::int32_t y) {
+      const std::vector<std::uint32_t>& here = blocks_[at(x, y)];
+      found.insert(found.end(), here.begin(), here.end());
+    });
+    std::ranges::sort(found);
+    const auto twice = std::ranges::unique(found);
+    found.erase(twice.begin(), twice.end());
+    for (const std::uint32_t block : found) cells.include(block_boxes_[block]);
   }
 
   const ReachInputs& in_;
   const bool asks_town_ = classify::any_asks(in_.tables, "town") || in_.book.ask_cells();
   const footprints::FootprintStore& store_;
-  geometry::BoxIndex houses_, rows_, blocks_;  ///< blocks: empty boxes for those that are too large
+  CellRange extent_;
+  std::size_t width_ = 0;
+  std::vector<CellRange> outlines_, rows_;          ///< by square: around the outlines that touch it; around their rows
+  std::vector<std::vector<std::uint32_t>> blocks_;  ///< of these outlines
+  std::vector<PlanBox> block_boxes_;                ///< empty for those that are too large
 };
 
 }  // namespace
@@ -151,10 +181,19 @@ AreaReach reaches_of(const ReachInputs& inputs, std::span<const model::TileId> t
                                                 footprints::kTileLevel));
     if (found != own.end()) found->second.include(geometry::box_of(c.blocks[b].polygon.outer.points));
   }
-  const Reaches reaches(inputs);
+  std::vector<PlanBox> boxes;
+  for (const auto& [tile, box] : own) boxes.push_back(box);
+  Reaches reaches(inputs, boxes);
   AreaReach out;
   for (const auto& [tile, box] : own) out.emplace(tile, reaches.reach(box));
   return out;
+}
+
+bool rules_ask_look(const districts::RuleSets& book) {
+  for (const districts::RuleSet& set : book.sets)
+    for (const districts::PlaceQuery& query : set.queries)
+      if (query.kind == districts::PlaceQuery::Kind::near && importers::osm::tells_look(query.feature.key)) return true;
+  return false;
 }
 
 double rules_reach(const districts::RuleSets& book) {
@@ -178,8 +217,8 @@ PlanBox common(const PlanBox& a, const PlanBox& b) {
 }
 
 PlanBox needed_around(const TileReach& reach, double rules) {
-  PlanBox out = reach.far;
-  out.include(grown(reach.near, std::max(kNetworkReach, rules)));
+  PlanBox out = reach.far.box;
+  out.include(grown(reach.near.box, std::max(kNetworkReach, rules)));
   return out;
 }
 

@@ -8,15 +8,16 @@
 
 #include "pipeline/geometry/box_index.h"
 #include "pipeline/georef/projection.h"
+#include "pipeline/run/plan_cells.h"
 #include "pipeline/run/prepare_extract.h"
 
 namespace blockrand::run {
 
-/// Boxes in metres of the build CRS.
+/// In the build CRS.
 struct TileReach {
-  geometry::PlanBox near;  ///< what is measured, classified and built there counts: its blocks, its rows, its features
-  geometry::PlanBox far;   ///< and, where something asks for them, outlines of what stands in the district cells around
-  geometry::PlanBox look;  ///< of what tags say of a building's look: heights, storeys, roofs, years (ChangedObject::look_only)
+  CellRuns near;  ///< what is measured, classified and built there counts: its blocks, its rows, its features
+  CellRuns far;   ///< and, where something asks for them, outlines of what stands in the district cells around
+  CellRuns look;  ///< of what tags say of a building's look: heights, storeys, roofs, years (ChangedObject::look_only)
 };
 
 using AreaReach = std::map<model::TileId, TileReach>;
@@ -36,6 +37,9 @@ struct ReachInputs {
 /// Of the wanted tiles of the area, with or without buildings.
 /// \param tiles  in any order
 AreaReach reaches_of(const ReachInputs& inputs, std::span<const model::TileId> tiles);
+
+/// Whether a district rule asks for something near by what tags say of the look of buildings.
+bool rules_ask_look(const districts::RuleSets& book);
 
 /// m: how far district rules look at most for what is no building.
 double rules_reach(const districts::RuleSets& book);

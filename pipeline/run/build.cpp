@@ -336,7 +336,10 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
                                .rows = report.rows,
                                .area = *tile},
                               tile->only ? records_before(*part, cache.get()) : AreaRecord());
-    if (cache) note_reaches(*tile, {located, prepared, inputs.tables, inputs.rules.book, *tile, options.generate.neighbour_reach}, tiles_here);
+    if (cache)
+      note_reaches(*tile,
+                   {located, prepared, inputs.tables, inputs.rules.book, *tile, options.generate.neighbour_reach},
+                   tiles_here);
     area = told_area(tiles_here, located.facts.coverage);
     report.rows = std::move(area->rows);
     record.data_sha256 = area->data_sha256, record.data_time = area->data_time, record.counts = area->counts;

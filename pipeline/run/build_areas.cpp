@@ -334,12 +334,13 @@ class AreaBuild {
     } catch (const base::InputError&) {
       return because("the data of the earlier build are damaged");
     }
-    const double rules = rules_reach(BuildInputs(options_).rules.book);
+    const BuildInputs inputs(options_);
+    const RulesReach rules{rules_reach(inputs.rules.book), rules_ask_look(inputs.rules.book)};
     for (std::size_t i = 0; i < parts_.size(); ++i) look_at_changes(i, changes, rules, projection);
   }
 
   /// Which tiles of an area the changes concern, where work on the others is kept.
-  void look_at_changes(std::size_t i, std::span<const importers::osm::ChangedObject> changes, double rules,
+  void look_at_changes(std::size_t i, std::span<const importers::osm::ChangedObject> changes, const RulesReach& rules,
                        const georef::Projection& projection) {
     AreaPart& part = parts_[i];
     const Json run = json_of(options_.earlier + "/" + area_path(part.choice.id) + "/run.json");

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "pipeline/georef/crs.h"
 #include "pipeline/georef/tiles.h"
 
@@ -76,13 +78,50 @@ TEST(AreaRecord, TilesAreToldTogether) {
   EXPECT_NE(told_area(other, {}).data_sha256, told.data_sha256);
 }
 
+TEST(PlanCells, GrowAsTheirSquaresDo) {
+  // Against each square by itself.
+  std::mt19937 random(5);
+  for (int round = 0; round < 50; ++round) {
+    const CellRange extent{-20, -10, 30, 25};
+    PlanCells cells(extent);
+    std::vector<geometry::PlanBox> boxes;
+    for (unsigned i = 0; i < 1 + random() % 6; ++i) {
+      geometry::PlanBox& box = boxes.emplace_back();
+      box.include(
+          model::Point2{static_cast<double>(random() % 2000) - 800, static_cast<double>(random() % 1200) - 300});
+      box.include(model::Point2{box.minimum.x + static_cast<double>(random() % 300),
+                                box.minimum.y + static_cast<double>(random() % 300)});
+      cells.include(box);
+    }
+    const double distance = static_cast<double>(random() % 400);
+    cells.grow(distance);
+    const CellRuns runs = cells.runs();
+    for (int probe = 0; probe < 200; ++probe) {
+      geometry::PlanBox point;
+      point.include(
+          model::Point2{static_cast<double>(random() % 2400) - 950, static_cast<double>(random() % 1700) - 450});
+      const bool reached = std::ranges::any_of(boxes, [&](const auto& box) { return box.near(point, distance); });
+      // No place within the distance is missed, and none is further than two squares beyond it.
+      EXPECT_TRUE(!reached || runs.near(point, 0));
+      EXPECT_TRUE(!runs.near(point, 0) || std::ranges::any_of(boxes, [&](const auto& box) {
+        return box.near(point, distance + 2 * kReachCell);
+      }));
+      EXPECT_EQ(runs.near(point, 0), cells.meets(cells_of(point)));
+    }
+    for (const geometry::PlanBox& box : boxes) EXPECT_TRUE(holds(runs.box, box));
+  }
+}
+
 TEST(AreaReach, WindowsHoldWhatIsNeeded) {
   const georef::GeoBox bounds = georef::bounds(kWest);
   const georef::Crs crs = georef::open_crs("EPSG:25833", bounds);
   const georef::Projection projection(crs, bounds);
   const geometry::PlanBox tile = projected_box({bounds.west, bounds.south, bounds.east, bounds.north}, projection);
-  TileReach reach{tile, tile, tile};
-  reach.far.maximum.x += 700;
+  PlanCells cells(cells_of(tile));
+  cells.include(tile);
+  TileReach reach{cells.runs(), cells.runs(), cells.runs()};
+  reach.near.box = reach.far.box = tile;
+  reach.far.box.maximum.x += 700;
   const geometry::PlanBox needed = needed_around(reach, 0);
   EXPECT_EQ(needed.minimum.x, tile.minimum.x - kNetworkReach);
   EXPECT_EQ(needed.maximum.x, tile.maximum.x + kNetworkReach);
