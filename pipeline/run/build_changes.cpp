@@ -73,6 +73,84 @@ Told told_of(const Json& line, int asked) {
 
 using ToldById = std::map<std::string, Told>;
 
+/// What a tile counts for where both builds have it alike.
+struct TileSums {
+  std::uint64_t all = 0, modelled = 0, simpler = 0, with_height = 0;
+  double heights = 0;  ///< m
+};
+
+/// Takes from a line of explanations what TileSums count, and passes over all else: most of a line is why things are as they are.
+class LineCounter : public nlohmann::json_sax<Json> {
+ public:
+  explicit LineCounter(int asked) : asked_(asked) {}
+
+  /// \param modelled  gets the id, where there is a model of it; may be null \returns  false where the line is no object of JSON
+  bool count(const char* first, const char* last, TileSums& sums, std::vector<std::string>* modelled) {
+    depth_ = 0, is_object_ = false, id_.clear(), state_.clear(), lod_.reset(), height_.reset();
+    if (!Json::sax_parse(first, last, this) || !is_object_) return false;
+    ++sums.all;
+    if (state_ == "modelled") {
+      ++sums.modelled;
+      sums.simpler += lod_ && *lod_ < asked_;
+      if (height_) ++sums.with_height, sums.heights += *height_;
+      if (modelled) modelled->push_back(id_);
+    } else {
+      sums.simpler += state_ == "reported";
+    }
+    return true;
+  }
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t value) override { return integer(value); }
+  bool number_unsigned(number_unsigned_t value) override { return integer(static_cast<std::int64_t>(value)); }
+  bool number_float(number_float_t value, const string_t&) override { return number(value); }
+  bool string(string_t& text) override {
+    if (depth_ == 1 && key_ == "id") id_ = text;
+    if (depth_ == 1 && key_ == "state") state_ = text;
+    if (in_attribute() && key_ == "name") name_ = text;
+    return true;
+  }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override {
+    is_object_ = is_object_ || depth_ == 0;
+    ++depth_;
+    if (in_attribute()) name_.clear(), value_.reset();
+    return true;
+  }
+  bool key(string_t& text) override {
+    key_ = text;
+    if (depth_ == 1) attributes_ = text == "attributes";
+    return true;
+  }
+  bool end_object() override {
+    if (in_attribute() && name_ == "height" && value_) height_ = value_;
+    --depth_;
+    return true;
+  }
+  bool start_array(std::size_t) override { return ++depth_, true; }
+  bool end_array() override { return --depth_, true; }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
+
+ private:
+  /// Objects of the list "attributes" of the line.
+  bool in_attribute() const { return attributes_ && depth_ == 3; }
+  bool integer(std::int64_t value) {
+    if (depth_ == 1 && key_ == "lod") lod_ = value;
+    return number(static_cast<double>(value));
+  }
+  bool number(double value) {
+    if (in_attribute() && key_ == "value") value_ = value;
+    return true;
+  }
+
+  int asked_, depth_ = 0;
+  bool is_object_ = false, attributes_ = false;
+  std::string key_, id_, state_, name_;
+  std::optional<std::int64_t> lod_;
+  std::optional<double> value_, height_;
+};
+
 /// The explanations of a build, tile by tile; of one in areas, those of some of its areas.
 class Explained {
  public:
@@ -101,8 +179,29 @@ class Explained {
   /// Empty for a tile that it has not. \throws base::InputError  the file is damaged
   ToldById read(const std::string& tile) const {
     ToldById out;
+    for_each_line(tile, [&](const char* first, const char* last) {
+      const Json line = Json::parse(first, last, nullptr, false);
+      if (line.is_object()) out.emplace(member(line, "id"), told_of(line, asked_));
+      return line.is_object();
+    });
+    return out;
+  }
+
+  /// What read() would count. \param modelled  gets the ids of what has a model; may be null \throws as read
+  TileSums sums(const std::string& tile, std::vector<std::string>* modelled = nullptr) const {
+    TileSums sums;
+    LineCounter counter(asked_);
+    for_each_line(tile,
+                  [&](const char* first, const char* last) { return counter.count(first, last, sums, modelled); });
+    return sums;
+  }
+
+ private:
+  /// \param visit  returns whether the line is one of JSON
+  template <class Visit>
+  void for_each_line(const std::string& tile, Visit&& visit) const {
     const auto place = tiles_.find(tile);
-    if (place == tiles_.end()) return out;
+    if (place == tiles_.end()) return;
     const std::string path = folder_ + "/" + place->second + "explain/" + tile;
     std::ifstream file(path, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -117,16 +216,11 @@ class Explained {
     }
     for (std::size_t at = 0; at < text.size();) {
       const std::size_t end = std::min(text.find('\n', at), text.size());
-      const Json line = Json::parse(text.begin() + static_cast<std::ptrdiff_t>(at),
-                                    text.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
-      if (!line.is_object()) throw damaged("a line of it is no JSON");
-      out.emplace(member(line, "id"), told_of(line, asked_));
+      if (!visit(text.data() + at, text.data() + end)) throw damaged("a line of it is no JSON");
       at = end + 1;
     }
-    return out;
   }
 
- private:
   Json add_part(const std::string& part) {
     const std::string folder = folder_ + "/" + part;
     std::ifstream record_file(folder + "build.json", std::ios::binary);
@@ -166,12 +260,6 @@ void compare(const std::string& id, const Told& before, const Told& after, Build
   for (const Told::Attribute& a : before.attributes)
     if (old.contains(a.name)) out.attributes.push_back({id, a.name, a.value, "", a.source, "", ""});
 }
-
-/// What a tile counts for where both builds have it alike.
-struct TileSums {
-  std::uint64_t all = 0, modelled = 0, simpler = 0, with_height = 0;
-  double heights = 0;  ///< m
-};
 
 /// Of the tiles of an area, by the hash of what is told of them: the next night finds here what it has alike, without reading it.
 using AreaSums = std::map<std::string, TileSums>;
@@ -247,7 +335,7 @@ BuildChanges compare_builds(const std::string& before, const std::string& after,
       AreaSums all;
       for (const auto& [tile, part] : its.tiles()) {
         const std::string hash = its.hash(tile);
-        all.emplace(hash.empty() ? tile : hash, sums_of(its.read(tile)));
+        all.emplace(hash.empty() ? tile : hash, its.sums(tile));
       }
       return all;
     });
@@ -284,15 +372,14 @@ BuildChanges compare_builds(const std::string& before, const std::string& after,
     AreaSums* const area = place == now.tiles().end() || place->second.empty() ? nullptr : &of_parts[place->second];
     ToldById its;
     bool read = false;
-    const auto sums_now = [&] {
-      if (const auto found = known.find(hash); !hash.empty() && found != known.end()) return found->second;
+    const auto remembered_sums = [&](const std::function<TileSums()>& work) {
       return base::remembered<TileSums>(
           hash.empty() || area ? nullptr : memo, "told", [&](base::Packer& packer) { packer << hash << now.asked(); },
-          [&] {
-            if (!read) its = now.read(tile);
-            read = true;
-            return sums_of(its);
-          });
+          work);
+    };
+    const auto sums_now = [&] {
+      if (const auto found = known.find(hash); !hash.empty() && found != known.end()) return found->second;
+      return remembered_sums([&] { return read ? sums_of(its) : now.sums(tile); });
     };
     if (old && !hash.empty() && old->hash(tile) == hash && old->asked() == now.asked()) {
       const TileSums sums = sums_now();
@@ -300,10 +387,19 @@ BuildChanges compare_builds(const std::string& before, const std::string& after,
       if (area) area->emplace(hash, sums);
       continue;
     }
+    if (!old) {
+      std::vector<std::string> modelled;
+      const TileSums sums = now.sums(tile, &modelled);
+      remembered_sums([&] { return sums; });
+      if (area) area->emplace(hash.empty() ? tile : hash, sums);
+      out.all_after += sums.all, out.after += sums.modelled, out.simpler_after += sums.simpler;
+      std::ranges::move(modelled, std::back_inserter(out.added));
+      continue;
+    }
     its = now.read(tile), read = true;
     const TileSums sums = sums_now();  // for the next night
     if (area) area->emplace(hash.empty() ? tile : hash, sums);
-    ToldById mine = old ? old->read(tile) : ToldById();
+    ToldById mine = old->read(tile);
     out.all_before += mine.size(), out.all_after += its.size();
     for (const auto& [id, told] : mine) out.before += told.modelled, out.simpler_before += told.simpler;
     for (auto& [id, told] : its) {
@@ -319,10 +415,7 @@ BuildChanges compare_builds(const std::string& before, const std::string& after,
     gone.merge(mine);
     for (auto at = come.begin(); at != come.end();) {
       const auto found = gone.find(at->first);
-      if (!old) {
-        // Nothing to wait for.
-        if (at->second.modelled) out.added.push_back(at->first);
-      } else if (found == gone.end()) {
+      if (found == gone.end()) {
         ++at;
         continue;
       } else {
