@@ -79,15 +79,22 @@ struct TileSums {
   double heights = 0;  ///< m
 };
 
-/// Takes from a line of explanations what TileSums count, and passes over all else: most of a line is why things are as they are.
+/// Takes from a line of explanations what TileSums count. Most of a line is why things are as they are: what stands before the tags is
+/// read, and the attributes up to the height.
 class LineCounter : public nlohmann::json_sax<Json> {
  public:
   explicit LineCounter(int asked) : asked_(asked) {}
 
-  /// \param modelled  gets the id, where there is a model of it; may be null \returns  false where the line is no object of JSON
-  bool count(const char* first, const char* last, TileSums& sums, std::vector<std::string>* modelled) {
-    depth_ = 0, is_object_ = false, id_.clear(), state_.clear(), lod_.reset(), height_.reset();
-    if (!Json::sax_parse(first, last, this) || !is_object_) return false;
+  /// \param modelled  gets the id, where there is a model of it; may be null \returns  false where the line is none
+  bool count(std::string_view line, TileSums& sums, std::vector<std::string>* modelled) {
+    id_.clear(), state_.clear(), lod_.reset(), height_.reset();
+    // Either they are at its end, or the reading ends where no more is wanted.
+    if (!read(line, false) || id_.empty()) return false;
+    // In a text the quotes would stand behind a backslash.
+    constexpr std::string_view kAttributes = "\"attributes\":";
+    if (const std::size_t at = line.find(kAttributes);
+        at != std::string_view::npos && !read(line.substr(at + kAttributes.size()), true))
+      return false;
     ++sums.all;
     if (state_ == "modelled") {
       ++sums.modelled;
@@ -106,46 +113,52 @@ class LineCounter : public nlohmann::json_sax<Json> {
   bool number_unsigned(number_unsigned_t value) override { return integer(static_cast<std::int64_t>(value)); }
   bool number_float(number_float_t value, const string_t&) override { return number(value); }
   bool string(string_t& text) override {
-    if (depth_ == 1 && key_ == "id") id_ = text;
-    if (depth_ == 1 && key_ == "state") state_ = text;
-    if (in_attribute() && key_ == "name") name_ = text;
+    if (in_head() && key_ == "id") id_ = text;
+    if (in_head() && key_ == "state") state_ = text;
+    if (attributes_ && depth_ == 2 && key_ == "name") name_ = text;
     return true;
   }
   bool binary(binary_t&) override { return true; }
   bool start_object(std::size_t) override {
-    is_object_ = is_object_ || depth_ == 0;
     ++depth_;
-    if (in_attribute()) name_.clear(), value_.reset();
+    if (attributes_ && depth_ == 2) name_.clear(), value_.reset();
     return true;
   }
   bool key(string_t& text) override {
     key_ = text;
-    if (depth_ == 1) attributes_ = text == "attributes";
-    return true;
+    done_ = done_ || (in_head() && text == "tags");
+    return !done_;
   }
   bool end_object() override {
-    if (in_attribute() && name_ == "height" && value_) height_ = value_;
+    if (attributes_ && depth_ == 2 && name_ == "height" && value_) height_ = value_, done_ = true;
     --depth_;
-    return true;
+    return !done_;
   }
   bool start_array(std::size_t) override { return ++depth_, true; }
-  bool end_array() override { return --depth_, true; }
+  bool end_array() override {
+    done_ = done_ || --depth_ == 0;
+    return !done_;
+  }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
 
  private:
-  /// Objects of the list "attributes" of the line.
-  bool in_attribute() const { return attributes_ && depth_ == 3; }
+  /// \param attributes  whether it is their list, else the line
+  bool read(std::string_view text, bool attributes) {
+    attributes_ = attributes, depth_ = 0, done_ = false, key_.clear(), name_.clear(), value_.reset();
+    return Json::sax_parse(text.begin(), text.end(), this) || done_;
+  }
+  bool in_head() const { return !attributes_ && depth_ == 1; }
   bool integer(std::int64_t value) {
-    if (depth_ == 1 && key_ == "lod") lod_ = value;
+    if (in_head() && key_ == "lod") lod_ = value;
     return number(static_cast<double>(value));
   }
   bool number(double value) {
-    if (in_attribute() && key_ == "value") value_ = value;
+    if (attributes_ && depth_ == 2 && key_ == "value") value_ = value;
     return true;
   }
 
   int asked_, depth_ = 0;
-  bool is_object_ = false, attributes_ = false;
+  bool attributes_ = false, done_ = false;
   std::string key_, id_, state_, name_;
   std::optional<std::int64_t> lod_;
   std::optional<double> value_, height_;
@@ -191,8 +204,9 @@ class Explained {
   TileSums sums(const std::string& tile, std::vector<std::string>* modelled = nullptr) const {
     TileSums sums;
     LineCounter counter(asked_);
-    for_each_line(tile,
-                  [&](const char* first, const char* last) { return counter.count(first, last, sums, modelled); });
+    for_each_line(tile, [&](const char* first, const char* last) {
+      return counter.count(std::string_view(first, static_cast<std::size_t>(last - first)), sums, modelled);
+    });
     return sums;
   }
 
