@@ -151,10 +151,10 @@ struct Overview::State {
       east = std::max(east, b.east), north = std::max(north, b.north);
       most = std::max(most, e.models);
     }
-    const georef::GeoBox first = georef::bounds(entries.front().tile);
+    const georef::GeoBox first = georef::bounds(entries.front().tile);  // of the coarsest
     // Pixels for one area; a tile of the quadtree is as high as it is wide in degrees.
-    const double size = std::clamp(900.0 / ((east - west) / first.width()), 8.0, 90.0);
-    const double scale = size / first.width(), squash = 1.6;  // degrees of longitude are shorter than those of latitude
+    const double scale = std::clamp(900.0 / ((east - west) / first.width()), 8.0, 90.0) / first.width();
+    const double squash = 1.6;  // degrees of longitude are shorter than those of latitude
     Values map;
     map.set("width", fmt::format("{:.0f}", (east - west) * scale));
     map.set("height", fmt::format("{:.0f}", (north - south) * scale * squash));
@@ -165,7 +165,8 @@ struct Overview::State {
       cell.set("link", link_of(e)).set("name", text_of(e.tile)).set("models", base::with_thousands(e.models));
       cell.set("x", fmt::format("{:.1f}", (b.west - west) * scale));
       cell.set("y", fmt::format("{:.1f}", (north - b.north) * scale * squash));
-      cell.set("cell_width", fmt::format("{:.1f}", size)).set("cell_height", fmt::format("{:.1f}", size * squash));
+      cell.set("cell_width", fmt::format("{:.1f}", b.width() * scale));
+      cell.set("cell_height", fmt::format("{:.1f}", b.width() * scale * squash));
       cell.set("opacity", fmt::format("{:.2f}", 0.08 + 0.9 * std::sqrt(share)));
       map.add("cells", std::move(cell));
     }

@@ -28,14 +28,10 @@ constexpr double kTownReach = 3 * context::kCellSize;
 
 class Reaches {
  public:
-  explicit Reaches(const ReachInputs& in, std::span<const PlanBox> own)
-      : in_(in), store_(in.prepared.repaired.footprints) {
-    PlanBox all;
-    for (const PlanBox& box : own) all.include(box);
-    for (std::uint32_t b = 0; b < store_.size(); ++b) all.include(store_[b].box);
-    // What is grown reaches no further beyond what lies there.
-    constexpr double kMargin = 2000;  // m
-    extent_ = cells_of(grown(all, kMargin));
+  explicit Reaches(const ReachInputs& in) : in_(in), store_(in.prepared.repaired.footprints) {
+    // What was read; an outline may lead kilometres out of it, and what is grown somewhat.
+    constexpr double kMargin = 1000;  // m
+    extent_ = cells_of(grown(projected_box(in.area.window, in.located.projection), kMargin));
     width_ = static_cast<std::size_t>(extent_.x1 - extent_.x0) + 1;
     const std::size_t count = extent_.empty() ? 0 : width_ * (static_cast<std::size_t>(extent_.y1 - extent_.y0) + 1);
     outlines_.resize(count), rows_.resize(count), blocks_.resize(count);
@@ -48,13 +44,14 @@ class Reaches {
       if (range.empty()) continue;
       const std::uint32_t block = context.block_of[b];
       const CellRange row = b < row_boxes.size() ? cells_of(row_boxes[b]) : CellRange();
-      for (std::int32_t y = range.y0; y <= range.y1; ++y)
-        for (std::int32_t x = range.x0; x <= range.x1; ++x) {
+      const CellRange here = common(range, extent_);
+      for (std::int32_t y = here.y0; y <= here.y1; ++y)
+        for (std::int32_t x = here.x0; x <= here.x1; ++x) {
           const std::size_t cell = at(x, y);
           outlines_[cell].include(range), rows_[cell].include(row);
           if (block == model::kNoIndex || block_boxes_[block].empty()) continue;
-          std::vector<std::uint32_t>& here = blocks_[cell];
-          if (std::ranges::find(here, block) == here.end()) here.push_back(block);
+          std::vector<std::uint32_t>& its = blocks_[cell];
+          if (std::ranges::find(its, block) == its.end()) its.push_back(block);
         }
     }
   }
@@ -181,9 +178,7 @@ AreaReach reaches_of(const ReachInputs& inputs, std::span<const model::TileId> t
                                                 footprints::kTileLevel));
     if (found != own.end()) found->second.include(geometry::box_of(c.blocks[b].polygon.outer.points));
   }
-  std::vector<PlanBox> boxes;
-  for (const auto& [tile, box] : own) boxes.push_back(box);
-  Reaches reaches(inputs, boxes);
+  Reaches reaches(inputs);
   AreaReach out;
   for (const auto& [tile, box] : own) out.emplace(tile, reaches.reach(box));
   return out;

@@ -144,6 +144,27 @@ std::vector<model::Point2> projected(std::span<const model::Location> centres, c
 
 }  // namespace
 
+std::vector<importers::osm::StoredArea> areas_of(const importers::osm::ExtractStore& store, int level,
+                                                 std::uint64_t most) {
+  std::vector<importers::osm::StoredArea> out;
+  std::vector<model::TileId> cut;  // those of the level before
+  for (int finer = level; finer == level || !cut.empty(); ++finer) {
+    std::vector<model::TileId> here;
+    for (importers::osm::StoredArea& area : store.areas(finer)) {
+      if (finer > level &&
+          std::ranges::none_of(cut, [&](const model::TileId& t) { return georef::contains(t, area.tile); }))
+        continue;
+      const georef::GeoBox window = georef::with_halo(area.tile, kHalo);
+      if (finer < kFinestAreas && store.part({window.west, window.south, window.east, window.north}).bytes > most)
+        here.push_back(area.tile);
+      else
+        out.push_back(std::move(area));
+    }
+    cut = std::move(here);
+  }
+  return out;
+}
+
 RegionSurvey survey_region(const importers::osm::ExtractStore& store, const BuildOptions& options,
                            base::Progress& progress, const base::Memo* memo) {
   const Surveyor surveyor(store, options);
@@ -153,7 +174,7 @@ RegionSurvey survey_region(const importers::osm::ExtractStore& store, const Buil
   std::map<std::uint32_t, std::string> why;
   std::vector<attributes::NamedPlaceQuestion> named_places;
   std::map<std::tuple<std::string, std::string, model::OsmId>, attributes::PinnedArea> pins;
-  const std::vector<importers::osm::StoredArea> areas = store.areas(options.areas);
+  const std::vector<importers::osm::StoredArea> areas = areas_of(store, options.areas);
   for (const importers::osm::StoredArea& area : areas) {
     AreaFacts facts = surveyor.look(area, &area == areas.data() && store.has_placeless(), memo);
     if (facts.objects > 0) survey.objects[area.tile] = facts.objects;

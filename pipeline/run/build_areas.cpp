@@ -49,9 +49,6 @@ using model::TileId;
 constexpr std::uint64_t kAreaBase = 160'000'000;
 constexpr double kPerStoredByte = 12;
 
-/// Above it what lies around an area is a multiple of what lies in it; --areas takes more, for who knows.
-constexpr int kMostDivided = 13;
-
 /// What an area's process sends back beside its files.
 struct AreaOutcome {
   std::uint64_t tiles_built = 0, tiles_kept = 0;
@@ -246,7 +243,7 @@ class AreaBuild {
     for (const auto& [tile, objects] : survey_.objects) tiles.insert(tile);
     // What has no place needs one that tells of it.
     if (tiles.empty()) {
-      const std::vector<importers::osm::StoredArea> areas = store.areas(options_.areas);
+      const std::vector<importers::osm::StoredArea> areas = areas_of(store, options_.areas);
       tiles.insert(areas.empty() ? TileId{options_.areas, 0, 0} : areas.front().tile);
     }
     std::uint64_t largest = 0;
@@ -276,7 +273,7 @@ class AreaBuild {
                                          static_cast<std::size_t>(workers));
       if (static_cast<std::uint64_t>(options_.memory_limit) < each)
         progress_.warn(fmt::format("--memory-limit: one area needs about {}. {}", base::with_byte_unit(each),
-                                   options_.areas < kMostDivided
+                                   options_.areas < kFinestAreas
                                        ? fmt::format("Choose smaller ones, --areas {}", options_.areas + 1)
                                        : std::string("Smaller ones would hardly need less")));
     }

@@ -140,8 +140,8 @@ base::OptionTable<B> place_and_ground() {
            .minimum = 0,
            .maximum = 14,
            .help = "build one area after the other, each tile of this level of the quadtree (11: about 6 by 10 km at "
-                   "51 degrees), so that memory does not grow with the extract; 0: all at once; update: as the size "
-                   "asks, 1 is at once",
+                   "51 degrees; cut in four where a town is dense), so that memory does not grow with the extract; 0: "
+                   "all at once; update: as the size asks, 1 is at once",
            .record = OptionRecord::none},
           &B::areas),
       text({.name = "area",

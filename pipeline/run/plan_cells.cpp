@@ -30,6 +30,12 @@ CellRange cells_of(const PlanBox& box) {
   return {cell_at(box.minimum.x), cell_at(box.minimum.y), cell_at(box.maximum.x), cell_at(box.maximum.y)};
 }
 
+CellRange common(const CellRange& a, const CellRange& b) {
+  if (a.empty() || b.empty()) return {};
+  const CellRange both{std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+  return both.y0 > both.y1 ? CellRange() : both;
+}
+
 bool CellRuns::near(const PlanBox& other, double distance) const {
   if (!box.near(other, distance)) return false;
   PlanBox around = other;
@@ -48,13 +54,6 @@ PlanCells::PlanCells(const CellRange& extent) : extent_(extent) {
   cells_.assign(width_ * (static_cast<std::size_t>(extent.y1 - extent.y0) + 1), 0);
 }
 
-CellRange PlanCells::clipped(CellRange range) const {
-  if (range.empty() || extent_.empty()) return {};
-  range = {std::max(range.x0, extent_.x0), std::max(range.y0, extent_.y0), std::min(range.x1, extent_.x1),
-           std::min(range.y1, extent_.y1)};
-  return range.y0 > range.y1 ? CellRange() : range;
-}
-
 void PlanCells::include(const PlanBox& box) { include(cells_of(box)); }
 
 void PlanCells::include(const CellRange& range) {
@@ -63,7 +62,7 @@ void PlanCells::include(const CellRange& range) {
   box.minimum = {range.x0 * kReachCell, range.y0 * kReachCell};
   box.maximum = {(range.x1 + 1) * kReachCell, (range.y1 + 1) * kReachCell};
   box_.include(box);
-  const CellRange here = clipped(range);
+  const CellRange here = common(range, extent_);
   if (here.empty()) return;
   for (std::int32_t y = here.y0; y <= here.y1; ++y)
     std::fill_n(cells_.begin() + static_cast<std::ptrdiff_t>(at(here.x0, y)), here.x1 - here.x0 + 1, std::uint8_t{1});
@@ -83,7 +82,7 @@ void PlanCells::grow(double distance) {
   box_.minimum = {box_.minimum.x - by * kReachCell, box_.minimum.y - by * kReachCell};
   box_.maximum = {box_.maximum.x + by * kReachCell, box_.maximum.y + by * kReachCell};
   if (used_.empty()) return;
-  const CellRange wide = clipped({used_.x0 - by, used_.y0 - by, used_.x1 + by, used_.y1 + by});
+  const CellRange wide = common({used_.x0 - by, used_.y0 - by, used_.x1 + by, used_.y1 + by}, extent_);
   // Along rows: from each square to `by` beyond it on both sides.
   const std::size_t columns = static_cast<std::size_t>(wide.x1 - wide.x0) + 1;
   std::vector<std::uint8_t> along(cells_.size(), 0);
@@ -114,7 +113,7 @@ void PlanCells::grow(double distance) {
 }
 
 bool PlanCells::meets(const CellRange& range) const {
-  const CellRange here = clipped(range);
+  const CellRange here = common(range, extent_);
   if (here.empty()) return false;
   for (std::int32_t y = here.y0; y <= here.y1; ++y)
     for (std::int32_t x = here.x0; x <= here.x1; ++x)

@@ -31,6 +31,7 @@ struct CellRange {
   void include(const CellRange& other);
 };
 CellRange cells_of(const geometry::PlanBox& box);
+CellRange common(const CellRange& a, const CellRange& b);
 
 /// A set that grows.
 class PlanCells {
@@ -57,8 +58,6 @@ class PlanCells {
   std::size_t at(std::int32_t x, std::int32_t y) const {
     return static_cast<std::size_t>(y - extent_.y0) * width_ + static_cast<std::size_t>(x - extent_.x0);
   }
-  CellRange clipped(CellRange range) const;
-
   CellRange extent_, used_;  ///< used_: around all that are set
   std::size_t width_ = 0;
   std::vector<std::uint8_t> cells_;  ///< by row

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -41,13 +42,23 @@ class Tree {
   Tree(const Json& asset, std::size_t most) : asset_(asset), most_(most) {}
 
   std::map<std::string, std::string> write(const std::vector<NestedTileset>& tilesets) {
-    std::map<TileId, Node> level;
+    std::map<int, std::map<TileId, Node>, std::greater<>> by_level;
     for (const NestedTileset& t : tilesets) {
       Json json = tile_of(t.volume, t.error);
       json["content"] = {{"uri", t.uri}};
-      level[t.tile] = {t.volume, t.error, 1, std::move(json)};
+      by_level[t.tile.level][t.tile] = {t.volume, t.error, 1, std::move(json)};
     }
-    while (level.size() > 1 && level.begin()->first.level > 0) level = parents_of(std::move(level));
+    // From the finest one up; those of coarser levels come in at their own.
+    int at = by_level.begin()->first;
+    std::map<TileId, Node> level = std::move(by_level.begin()->second);
+    by_level.erase(by_level.begin());
+    while (at > 0 && (level.size() > 1 || !by_level.empty())) {
+      level = parents_of(std::move(level), by_level.empty());
+      --at;
+      if (by_level.empty() || by_level.begin()->first != at) continue;
+      level.merge(by_level.begin()->second);
+      by_level.erase(by_level.begin());
+    }
     std::vector<Node*> top;
     for (auto& [tile, node] : level) top.push_back(&node);
     // More than one: on both sides of the prime meridian. And the root names what it shows as a child.
@@ -77,13 +88,14 @@ class Tree {
     return node;
   }
 
-  std::map<TileId, Node> parents_of(std::map<TileId, Node> below) {
+  /// \param last  nothing but these will come
+  std::map<TileId, Node> parents_of(std::map<TileId, Node> below, bool last) {
     std::map<TileId, std::vector<Node*>> families;
     for (auto& [tile, node] : below) families[{tile.level - 1, tile.x / 2, tile.y / 2}].push_back(&node);
     std::map<TileId, Node> above;
     for (const auto& [tile, children] : families) {
       Node& node = above[tile] = children.size() == 1 ? std::move(*children.front()) : parent_of(children);
-      if (node.names > most_ && families.size() > 1) move_out(tile, node);
+      if (node.names > most_ && (families.size() > 1 || !last)) move_out(tile, node);
     }
     return above;
   }

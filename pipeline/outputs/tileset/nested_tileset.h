@@ -25,7 +25,7 @@ struct NestedTileset {
 
 /// Tilesets by path: "tileset.json" leads to all, by way of tilesets/LEVEL/X/Y.json where there are many. Nodes are tiles of the
 /// quadtree, each with the volume of what is below it and twice the largest error; one without a sibling is left out.
-/// \param tilesets  in any order, no two of one tile, all of one level \param asset  of each file
+/// \param tilesets  in any order; none lies within another one's tile \param asset  of each file
 /// \param most      a file names at most four times as many
 std::map<std::string, std::string> nested_tilesets(const std::vector<NestedTileset>& tilesets,
                                                    const nlohmann::ordered_json& asset, std::size_t most = 64);

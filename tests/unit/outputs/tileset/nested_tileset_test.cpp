@@ -72,7 +72,11 @@ TEST(NestedTilesets, EachIsReachedOnceAndNoFileGrows) {
     std::vector<NestedTileset> all;
     for (std::uint32_t x = 0; x < side; ++x)
       for (std::uint32_t y = 0; y < side; ++y)
-        if (side < 3 || random() % 4) all.push_back(nested(1080 + x, 800 + y));
+        if (side > 2 && random() % 10 == 0)  // cut in four
+          for (std::uint32_t k = 0; k < 4; ++k)
+            all.push_back(nested(2 * (1080 + x) + k % 2, 2 * (800 + y) + k / 2, 12));
+        else if (side < 3 || random() % 4)
+          all.push_back(nested(1080 + x, 800 + y));
     all.push_back(nested(7, 3));  // alone, far away
     const auto files = nested_tilesets(all, asset);
     const Reached reached = follow(files);
