@@ -44,10 +44,10 @@ using importers::osm::ExtractStore;
 using Json = nlohmann::ordered_json;
 using model::TileId;
 
-/// What an area needs, for --memory-limit: an estimate on the safe side. The densest area that was measured (43 MB stored, LoD3, 3D
-/// Tiles, two jobs; docs/internal/RESULTS.md) took 541 MB of the 680 that this gives; with all formats none was measured. Bytes.
+/// What an area needs, for --memory-limit: an estimate on the safe side. The densest area that was measured (67 MB stored, LoD3, 3D
+/// Tiles, two jobs; docs/internal/RESULTS.md) took 677 MB of the 763 that this gives; with all formats none was measured. Bytes.
 constexpr std::uint64_t kAreaBase = 160'000'000;
-constexpr double kPerStoredByte = 12;
+constexpr double kPerStoredByte = 9;
 
 /// What an area's process sends back beside its files.
 struct AreaOutcome {
