@@ -37,11 +37,19 @@ class ChangedObjects {
   /// Either may be null, or not visible.
   void add(const osmium::OSMObject* before, const osmium::OSMObject* after) {
     const auto alive = [](const osmium::OSMObject* o) { return o != nullptr && o->visible(); };
+    if (too_many_ || (!alive(before) && !alive(after))) return;
+    if (changes_.size() >= kMost) {
+      clear();
+      too_many_ = true;
+      return;
+    }
     if (alive(before)) changes_[key_of(*before)].before = copy(*before);
     if (alive(after)) changes_[key_of(*after)].after = copy(*after);
   }
   /// Begin again.
-  void clear() { changes_.clear(), copies_.clear(); }
+  void clear() { changes_.clear(), copies_.clear(), too_many_ = false; }
+  /// They would take too much memory: none are here.
+  bool too_many() const { return too_many_; }
   const std::map<ObjectKey, Change>& changes() const { return changes_; }
   const Change* find(const ObjectKey& key) const {
     const auto found = changes_.find(key);
@@ -55,6 +63,10 @@ class ChangedObjects {
     own.commit();
     return &own.get<osmium::OSMObject>(0);
   }
+  /// About 400 bytes each. What changes as much is no day's edits.
+  static constexpr std::size_t kMost = 1'000'000;
+
+  bool too_many_ = false;
   std::map<ObjectKey, Change> changes_;
   std::deque<osmium::memory::Buffer> copies_;
 };

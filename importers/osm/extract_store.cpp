@@ -85,10 +85,11 @@ namespace {
 
 /// What a cell holds of an object, for comparing two stores.
 struct Version {
-  std::string told, place;  ///< of a relation its members as well
+  std::string told;   ///< of a relation its members as well
+  std::string place;  ///< told_place
   Box box;
   Interest interest;
-  bool related = false;  ///< a relation of buildings
+  bool related = false;  ///< a relation of buildings, or one whose ways are some
 };
 
 using Versions = std::map<std::pair<osmium::item_type, std::int64_t>, Version>;
@@ -122,7 +123,8 @@ std::vector<ChangedObject> ExtractStore::changes_since(const ExtractStore& befor
         for (const osmium::RelationMember& m : relation.members())
           if (const auto way = versions.find({m.type(), m.ref()});
               way != versions.end() && m.type() != osmium::item_type::node)
-            version.told += way->second.told, version.place += way->second.place, version.box.add(way->second.box);
+            version.told += way->second.told, version.box.add(way->second.box),
+                version.related = version.related || way->second.interest.is_building();
       }
       versions.emplace(std::pair(object.type(), object.id()), std::move(version));
     });
@@ -143,8 +145,9 @@ std::vector<ChangedObject> ExtractStore::changes_since(const ExtractStore& befor
     using enum model::FeatureKind;
     for (const model::FeatureKind kind : {street, railway, water, passage})
       changed.network = changed.network || (changed.kinds & static_cast<std::uint32_t>(kind)) != 0;
-    changed.look_only = both.size() == 2 && (*both.begin())->place == (*(both.end() - 1))->place && changed.building &&
-                        !changed.network;
+    // Relations share out what their ways say.
+    changed.look_only = key.first == osmium::item_type::way && both.size() == 2 &&
+                        (*both.begin())->place == (*(both.end() - 1))->place && changed.building && !changed.network;
     if (!box.empty())
       changed.box = {kUnit * static_cast<double>(box.west), kUnit * static_cast<double>(box.south),
                      kUnit * static_cast<double>(box.east), kUnit * static_cast<double>(box.north)};

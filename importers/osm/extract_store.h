@@ -40,11 +40,12 @@ struct StoredPart {
 /// An object that another store has otherwise, or lacks. Both versions together where they lie in one cell, else each by itself.
 struct ChangedObject {
   model::OsmId id;
-  std::uint32_t kinds = 0;      ///< model::FeatureKind bits
-  bool building = false;        ///< a building or a part of one, or a relation of these
-  bool network = false;         ///< may bound blocks: a street, railway, water or covered way
-  bool placeless = false;       ///< a version has no known position at all
-  bool look_only = false;       ///< a building whose height, storeys, roof, colours, materials or year alone differ
+  std::uint32_t kinds = 0;  ///< model::FeatureKind bits
+  bool building = false;    ///< a building or a part of one, or a relation of these
+  bool network = false;     ///< may bound blocks: a street, railway, water or covered way
+  bool placeless = false;   ///< a version has no known position at all
+  bool look_only =
+      false;  ///< a way that is a building; of tags that it had, values of storeys, roof, colours, materials or year alone differ
   std::array<double, 4> box{};  ///< west, south, east, north in degrees
 };
 

@@ -41,7 +41,10 @@ std::int64_t take_signed(std::string_view& bytes) {
 
 }  // namespace
 
-NodeFile::NodeFile(std::string path) : path_(std::move(path)), out_(path_, std::ios::binary | std::ios::trunc) {
+NodeFile::NodeFile(std::string path) : path_(std::move(path)) {
+  std::error_code error;
+  std::filesystem::remove(path_, error);  // it may be a link to that of another store
+  out_.open(path_, std::ios::binary | std::ios::trunc);
   if (!out_) throw base::OutputError(path_ + ": cannot be written: " + std::strerror(errno));
 }
 

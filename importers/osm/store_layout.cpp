@@ -158,8 +158,13 @@ std::string told(const OSMObject& object) {
 std::string told_place(const OSMObject& object) {
   base::Packer p;
   p << static_cast<int>(object.type()) << object.id();
+  // Storeys of what lies on a layer of its own say whether it stands above the ground.
+  bool layered = false;
+  for_each_tag(object,
+               [&](std::string_view key, std::string_view) { layered = layered || key == model::osm_key::kLayer; });
   for_each_tag(object, [&](std::string_view key, std::string_view value) {
-    if (!tells_look(key)) p << std::string(key) << std::string(value);
+    p << std::string(key);
+    if (layered || !tells_look(key)) p << std::string(value);
   });
   p << std::string();
   pack_places(object, p);
@@ -172,28 +177,26 @@ namespace blockrand::importers::osm {
 
 bool tells_look(std::string_view key) {
   using namespace model::osm_key;
-  constexpr std::array kKeys = {kHeight,
-                                kBuildingHeight,
-                                kEstHeight,
-                                kBuildingLevels,
+  // Not heights: they say which outlines lie above each other.
+  constexpr std::array kKeys = {kBuildingLevels,
                                 kLevels,
                                 kRoofLevels,
+                                kBuildingRoofLevels,
                                 kRoofShape,
                                 kRoofHeight,
                                 kRoofAngle,
                                 kRoofDirection,
+                                kRoofOrientation,
                                 kRoofMaterial,
                                 kRoofColour,
-                                kRoofOrientation,
-                                kBuildingRoofLevels,
-                                kBuildingRoofShape,
                                 kStartDate,
                                 kBuildingMaterial,
                                 kBuildingColour,
-                                kBuildingFacadeMaterial,
-                                kBuildingFacadeColour,
+                                kBuildingRoofShape,
                                 kFacadeColour,
                                 kFacadeMaterial,
+                                kBuildingFacadeMaterial,
+                                kBuildingFacadeColour,
                                 kBuildingArchitecture};
   return std::ranges::find(kKeys, key) != kKeys.end();
 }

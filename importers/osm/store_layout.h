@@ -145,7 +145,8 @@ constexpr double kUnit = 1e-7;
 Box box_of(const std::array<double, 4>& window);
 /// What an object says, as bytes: without what lies between fields in memory.
 std::string told(const osmium::OSMObject& object);
-/// The same without version, time and tags that say what a building is like, not where anything is (extract_store.h).
+/// The same without version, time and values of tags that say what a building is like, not where anything is (tells_look). How many tags there
+/// are, and which keys, counts: of two outlines in one place the one that tells more is built.
 std::string told_place(const osmium::OSMObject& object);
 
 }  // namespace blockrand::importers::osm::store_layout

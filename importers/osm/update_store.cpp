@@ -44,7 +44,7 @@ constexpr double kMostUnused = 0.3, kMostMoved = 0.02;
 /// Bytes of no use that are too few to mind.
 constexpr double kLittleUnused = 10'000'000;
 /// Nodes that are elsewhere than their file says are held in memory: about 70 bytes each.
-constexpr std::size_t kMostMovedNodes = 1'000'000;
+constexpr std::size_t kMostMovedNodes = 500'000;
 /// As many may move in a small extract.
 constexpr double kFewNodes = 1000;
 
@@ -376,12 +376,17 @@ class StoreUpdater {
     fs::remove(index_path(folder_), error);
     fs::create_directories(folder_, error);
     if (error) throw base::OutputError(folder_ + ": cannot be made: " + error.message());
+    const auto must = [&] {
+      if (error) throw base::OutputError(folder_ + ": cannot be written: " + error.message() + ". Free some space");
+    };
     fs::copy_file(old_.objects, objects_path(folder_), fs::copy_options::overwrite_existing, error);
-    if (!error) fs::remove(nodes_path(folder_), error);
-    if (!error) fs::create_hard_link(nodes_before_, nodes_path(folder_), error);
-    if (error) error.clear(), fs::copy_file(nodes_before_, nodes_path(folder_), error);
-    if (error) throw base::OutputError(folder_ + ": cannot be written: " + error.message() + ". Free some space");
+    must();
     written_ = fs::file_size(objects_path(folder_), error);
+    must();
+    fs::remove(nodes_path(folder_), error);
+    fs::create_hard_link(nodes_before_, nodes_path(folder_), error);
+    if (error) error.clear(), fs::copy_file(nodes_before_, nodes_path(folder_), error);
+    must();
     out_.open(objects_path(folder_), std::ios::binary | std::ios::app);
     check();
     std::map<TileId, CellEntry> cells;
@@ -481,6 +486,7 @@ class StoreUpdater {
 
 std::string update_store(std::span<const std::string> before, const ChangedObjects& changes, const std::string& extract,
                          const std::string& folder) {
+  if (changes.too_many()) return "more differs than is worth it";
   try {
     StoreUpdater(before, changes, extract, folder).update();
     return {};

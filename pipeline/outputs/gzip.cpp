@@ -55,13 +55,13 @@ std::string gunzip(std::string_view bytes) {
   constexpr int kGzipHeader = 16;
   if (inflateInit2(&stream, MAX_WBITS + kGzipHeader) != Z_OK) throw std::bad_alloc();
   std::string out;
-  // The last member says its size at the end (RFC 1952); what is more than deflate can hold is not believed.
+  // The last member says its size at the end (RFC 1952). What is damaged may say anything.
   if (bytes.size() >= 4) {
     std::size_t size = 0;
     for (std::size_t i = 0; i < 4; ++i)
       size |= std::size_t{static_cast<unsigned char>(bytes[bytes.size() - 4 + i])} << (8 * i);
-    constexpr std::size_t kMostRatio = 1032;
-    if (size / kMostRatio <= bytes.size()) out.reserve(size + (1 << 16));
+    constexpr std::size_t kMostAtOnce = 64'000'000;
+    out.reserve(std::min(size, kMostAtOnce) + (1 << 16));
   }
   std::size_t consumed = 0;
   int status = Z_OK;

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
+#include <tuple>
 
 #include "pipeline/base/assets.h"
 #include "pipeline/base/error.h"
@@ -266,6 +267,8 @@ void Overview::add(std::vector<model::ReportRow> rows) {
 }
 
 void Overview::settle(std::vector<outputs::PartySide> open) {
+  // Areas end in any order; sums of fractions must not show it.
+  std::ranges::sort(open, {}, [](const outputs::PartySide& s) { return std::tuple(s.wall, s.length, s.base, s.top); });
   outputs::Statistics found;
   for (const outputs::PartySide& side : open) found.outer_wall_area -= side.length * (side.top - side.base);
   outputs::settle_party_walls(std::move(open), found);

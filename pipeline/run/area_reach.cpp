@@ -61,7 +61,9 @@ class Reaches {
     const classify::Tables& tables = in_.tables;
     const double heard = std::max({classify::kNearReach, tables.era_votes.reach, tables.storeys_votes.reach,
                                    tables.roof_votes.reach, tables.non_houses.equal_radius});
-    PlanCells mine(extent_);
+    // Nothing of a tile is heard further away than its area's window reaches (kHalo).
+    constexpr double kFar = 8000;  // m
+    PlanCells mine(common(extent_, cells_of(grown(own, kFar))));
     mine.include(own);
     // Tagged neighbours speak for houses without tags. What is measured of a house reads no tags but its own (features.h).
     PlanCells look = mine;
@@ -72,6 +74,10 @@ class Reaches {
     for (int round = 0; round < std::max(1, tables.smoothing.rounds); ++round)
       touch(look, classify::kNearReach), touch(styled, classify::kNearReach);
     touch(look, heard);
+    // Figures of its blocks count storeys.
+    PlanCells blocks = mine;
+    add_blocks(blocks);
+    look.include(blocks);
     PlanCells tagged = mine;
     add(rows_, tagged);
     touch(tagged, std::max(in_.neighbour_reach, context::kWallSegmentReach));

@@ -20,6 +20,9 @@ struct TileReach {
   CellRuns look;  ///< of what tags say of a building's look: heights, storeys, roofs, years (ChangedObject::look_only)
 };
 
+/// Areas of a coarser level are looked into as a whole: what their tiles hear of would take more room than it is worth.
+inline constexpr int kCoarsestReaches = 9;
+
 using AreaReach = std::map<model::TileId, TileReach>;
 
 /// m beyond TileReach::near that a street, a railway or a water can make itself felt: as far as a block reaches, and a row of houses more.

@@ -503,7 +503,8 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
     if (!resting.empty()) tiles_here = base::unpacked<AreaRecord>(outputs::gunzip(std::exchange(resting, {})));
     for (auto& [tile, key] : keys_here) tiles_here[tile].key = std::move(key);
     cache->keep(kRecords, part->record_key, base::packed(tiles_here), {}, {});
-    cache->keep(kReaches, part->record_key, base::packed(reaches_in(tiles_here)), {}, {});
+    if (record.area->level >= kCoarsestReaches)
+      cache->keep(kReaches, part->record_key, base::packed(reaches_in(tiles_here)), {}, {});
   }
   if (cache) tell_cache(*cache, options, summary, progress);
   folder.write("build.json", build_json(options, record));

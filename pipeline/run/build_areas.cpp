@@ -82,6 +82,7 @@ AreaOutcome outcome_of(BuildSummary&& s) {
 /// The store of the data of an earlier build, and what is otherwise now.
 struct EarlierStore {
   std::vector<std::string> files;  ///< in the order of kStoreFiles; empty: there is none
+  std::string nodes_sha256;        ///< of the last one, which no piece of it says
   std::shared_ptr<const importers::osm::ChangedObjects> changes;
 };
 
@@ -97,11 +98,14 @@ std::uint64_t divide(const BuildOptions& options, const std::string& work, const
     const std::string store = work + "/store", sorted = work + "/sorted.osm.pbf";
     std::string why;
     if (!earlier.files.empty()) try {
-        why = importers::osm::update_store(earlier.files, *earlier.changes, options.input, store);
+        why = base::sha256_file(earlier.files.back()) != earlier.nodes_sha256
+                  ? "it is damaged"
+                  : importers::osm::update_store(earlier.files, *earlier.changes, options.input, store);
         if (why.empty()) return why;
       } catch (const base::InputError&) {
         why = "it is damaged";
       }
+    fs::remove_all(store, error);  // what was begun may be links to files of the earlier one
     if (!importers::osm::write_store(options.input, store)) {
       const importers::osm::AppliedChanges applied = importers::osm::apply_changes(options.input, {}, sorted);
       if (applied.cleaned_texts)
@@ -285,6 +289,7 @@ class AreaBuild {
   }
 
   static constexpr std::string_view kStores = "stores";
+  /// \param data  hash of the extract's file: a store knows nodes and members that no kept object tells of
   static std::string store_key(const std::string& data) {
     base::Packer key;
     key << program_identity() << data;
@@ -297,9 +302,10 @@ class AreaBuild {
 
   /// The kept store of the data of the earlier build.
   std::optional<WorkCache::Found> kept_store() {
-    if (earlier_record_.is_null()) earlier_record_ = json_of(options_.earlier + "/build.json");
-    const Json data = earlier_record_.value("data", Json::object());
-    std::optional<WorkCache::Found> before = cache_->find(kStores, store_key(text_in(data, "sha256")));
+    const Json run = json_of(options_.earlier + "/run.json");
+    const Json inputs = run.is_object() ? run.value("inputs", Json()) : Json();
+    if (!inputs.is_array() || inputs.empty()) return std::nullopt;
+    std::optional<WorkCache::Found> before = cache_->find(kStores, store_key(text_in(inputs.front(), "sha256")));
     return before && before->places.size() == importers::osm::kStoreFiles.size() ? std::move(before) : std::nullopt;
   }
 
@@ -309,7 +315,7 @@ class AreaBuild {
     no_store_because_ = "the data of the earlier build are not kept";
     const std::optional<WorkCache::Found> before = kept_store();
     if (!before) return {};
-    return {before->places, options_.changes};
+    return {before->places, before->files.back().sha256, options_.changes};
   }
 
   /// What differs from the data of the earlier build, and which tiles it concerns. The store is kept for the next run.
@@ -321,7 +327,7 @@ class AreaBuild {
       const std::string path = work_ + "/store/" + name;
       files.push_back({name, fs::file_size(path, error), base::sha256_file(path)});
     }
-    cache_->keep(kStores, store_key(store.figures().sha256), {}, files, work_ + "/store");
+    cache_->keep(kStores, store_key(extract_file(options_).sha256), {}, files, work_ + "/store");
     if (options_.earlier.empty()) return;
     const std::optional<WorkCache::Found> before = kept_store();
     if (!before) return because("the data of the earlier build are not kept");

@@ -90,10 +90,10 @@ class LineCounter : public nlohmann::json_sax<Json> {
     id_.clear(), state_.clear(), lod_.reset(), height_.reset();
     // Either they are at its end, or the reading ends where no more is wanted.
     if (!read(line, false) || id_.empty()) return false;
-    // In a text the quotes would stand behind a backslash.
-    constexpr std::string_view kAttributes = "\"attributes\":";
+    // In a text the quotes would stand behind a backslash, and what a key of OSM has is a text.
+    constexpr std::string_view kAttributes = "\"attributes\":[";
     if (const std::size_t at = line.find(kAttributes);
-        at != std::string_view::npos && !read(line.substr(at + kAttributes.size()), true))
+        at != std::string_view::npos && !read(line.substr(at + kAttributes.size() - 1), true))
       return false;
     ++sums.all;
     if (state_ == "modelled") {

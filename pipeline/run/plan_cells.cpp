@@ -11,7 +11,8 @@ using geometry::PlanBox;
 /// Far beyond any projected place; what is no number counts as that.
 constexpr double kFarthest = 1e9;
 std::int32_t cell_at(double metres) {
-  return static_cast<std::int32_t>(std::floor(std::clamp(metres, -kFarthest, kFarthest) / kReachCell));
+  if (!(metres > -kFarthest)) metres = -kFarthest;
+  return static_cast<std::int32_t>(std::floor(std::min(metres, kFarthest) / kReachCell));
 }
 
 }  // namespace
@@ -85,14 +86,17 @@ void PlanCells::grow(double distance) {
   const CellRange wide = common({used_.x0 - by, used_.y0 - by, used_.x1 + by, used_.y1 + by}, extent_);
   // Along rows: from each square to `by` beyond it on both sides.
   const std::size_t columns = static_cast<std::size_t>(wide.x1 - wide.x0) + 1;
-  std::vector<std::uint8_t> along(cells_.size(), 0);
+  std::vector<std::uint8_t> along(columns * (static_cast<std::size_t>(used_.y1 - used_.y0) + 1), 0);
+  const auto place = [&](std::int32_t x, std::int32_t y) {
+    return static_cast<std::size_t>(y - used_.y0) * columns + static_cast<std::size_t>(x - wide.x0);
+  };
   for (std::int32_t y = used_.y0; y <= used_.y1; ++y)
     for (std::int32_t x = used_.x0; x <= used_.x1; ++x) {
       if (!cells_[at(x, y)]) continue;
       std::int32_t end = x;
       while (end < used_.x1 && cells_[at(end + 1, y)]) ++end;
       const std::int32_t from = std::max(x - by, wide.x0), to = std::min(end + by, wide.x1);
-      std::fill_n(along.begin() + static_cast<std::ptrdiff_t>(at(from, y)), to - from + 1, std::uint8_t{1});
+      std::fill_n(along.begin() + static_cast<std::ptrdiff_t>(place(from, y)), to - from + 1, std::uint8_t{1});
       x = end;
     }
   // Then across them: how many of the rows that reach a square hold it.
@@ -101,7 +105,7 @@ void PlanCells::grow(double distance) {
     const auto add = [&](std::int32_t row, std::int32_t sign) {
       if (row < used_.y0 || row > used_.y1) return;
       for (std::size_t c = 0; c < columns; ++c)
-        count[c] += sign * along[at(wide.x0 + static_cast<std::int32_t>(c), row)];
+        count[c] += sign * along[place(wide.x0 + static_cast<std::int32_t>(c), row)];
     };
     add(y + by, 1);
     add(y - by - 1, -1);

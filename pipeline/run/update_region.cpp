@@ -291,7 +291,7 @@ class Updater {
                                "Update from a full extract: blockrand update " + region_.path() + " EXTRACT.osm.pbf");
     }
     const std::optional<importers::osm::ClipPolygon> polygon = polygon_of(options_.region);
-    if (plan.extract.empty()) changes_ = importers::osm::no_changed_objects();
+    if (plan.extract.empty() && before_.areas > 0) changes_ = importers::osm::no_changed_objects();
     const AppliedChanges applied =
         importers::osm::apply_changes(base, plan.changes, path, polygon ? &*polygon : nullptr, changes_.get());
     if (applied.cleaned_texts)
@@ -437,6 +437,7 @@ class Updater {
     BuildOptions build = build_options_for(options_, region_, number, current, before_, fresh.areas);
     build.changes = changes_;
     const BuildSummary built = blockrand::run::build(build, progress_);
+    build.changes = nullptr, changes_ = nullptr;
     summary_.folder = region_.build(number);
     summary_.tiles_built = built.tiles_built, summary_.tiles_kept = built.tiles_kept;
     summary_.tiles_built_for = built.tiles_built_for;

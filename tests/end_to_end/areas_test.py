@@ -399,6 +399,43 @@ class RegionInAreas(RegionTest):
         map_.edit(houses[1], tags=dict(houses[1].tags, **{'building:levels': '5'}))
         night()
 
+    def test_the_divided_data_follow_the_changes(self):
+        """The store is brought up to date: nodes that come a night before their way, tags that decide between outlines."""
+        map_ = Map(town(200))
+        folder = self.region('follows', self.SETTINGS.replace(LEVEL, '10'))
+        self.update(folder, map_.write(self.path('follows.osm')))
+        far = 10 ** 9
+
+        def night(anew=None):
+            self.update(folder, map_.write_changes(self.path('follows.osc')))
+            run = read_json(self.current(folder), 'run.json')
+            self.assertEqual(run.get('store_written_because'), anew)
+            self.assertEqual(run.get('store'), None if anew else 'brought up to date')
+            clean = self.clean(map_, folder, '--lod', '2', '--areas', '10')
+            first, second = (without_runs(hashes(f)) for f in (self.current(folder), clean))
+            self.assertEqual(sorted(p for p in first.keys() | second.keys() if first.get(p) != second.get(p)), [])
+
+        houses = map_.ways('building')
+        corner = map_.objects[(0, houses[0].refs[0])]
+        for k, (x, y) in enumerate(((0, 0), (12, 0), (12, 9), (0, 9))):
+            map_.put(Node(far + k, corner.lon + (40 + x) * METRE, corner.lat + y * METRE, {}))
+        night()  # nothing that is kept
+        map_.put(Way(far, [far, far + 1, far + 2, far + 3, far], {'building': 'yes'}))
+        night()
+        # Nodes move that no way had so far, and one that a kept way has.
+        map_.edit(map_.objects[(0, far + 2)], lon=corner.lon + 55 * METRE)
+        night()
+        # Over the house lies another one: which of them stays whole, their tags decide.
+        map_.put(Way(far + 1, [far, far + 1, houses[1].refs[0], far], {'building': 'yes', 'name': 'A'}))
+        night()
+        for tags in ({'building:levels': '2', 'roof:shape': 'flat'}, {'building:levels': '3', 'roof:shape': 'flat'},
+                     {'height': '9'}, {'attributes': '[x', 'building:levels': '3'}, {}):
+            map_.edit(map_.objects[(1, far)], tags=dict({'building': 'yes'}, **tags))
+            night()
+        # All have one time: that of another one may be the newest, or not.
+        map_.delete(map_.objects[(1, far)])
+        night('the newest object is gone')
+
     def test_far_areas_stay_as_they_are(self):
         """Two towns 40 km apart: an edit in one touches nothing of the other."""
         objects = town(400)

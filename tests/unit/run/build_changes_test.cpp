@@ -37,13 +37,14 @@ void write_build(const fs::path& folder, const Town& town) {
     for (const auto& [tile, houses] : tiles) {
       std::string lines;
       for (const auto& [id, height] : houses)
-        lines +=
-            nlohmann::json{{"id", id},
-                           {"state", "modelled"},
-                           {"lod", 2},
-                           {"attributes", {{{"name", "height"}, {"value", height}, {"source", "tag"}, {"why", ""}}}}}
-                .dump() +
-            "\n";
+        lines += nlohmann::ordered_json{{"id", id},
+                                        {"state", "modelled"},
+                                        {"lod", 2},
+                                        {"tags", {{"attributes", "a key of OSM"}}},
+                                        {"attributes",
+                                         {{{"name", "height"}, {"value", height}, {"source", "tag"}, {"why", ""}}}}}
+                     .dump() +
+                 "\n";
       const std::string bytes = outputs::gzip(lines);
       write(folder / tile_file(area, tile), bytes);
       record["files"]["explain/" + tile + ".jsonl.gz"] = {{"sha256", base::sha256_of(bytes)}};

@@ -161,15 +161,17 @@ TEST(ExtractStore, AreasHashWhatTheyHold) {
 TEST(ExtractStore, ChangesAreTheObjectsThatDiffer) {
   const TempFolder folder;
   struct Edit {
-    std::string use = "yes", storeys = "3";
+    std::string use = "yes", storeys = "3", height = "";
     double x = 0;  ///< m, of the third building
     bool street = true, park = true;
   };
   const auto stored = [&](const std::string& name, const Edit& edit) {
     OsmText text;
     text.corners(1, 0, 0, 1).corners(11, 9000, 0, 1).corners(21, 20 + edit.x, 0, 1).corners(31, 40, 0, 1);
-    text.way(1, {1, 2, 3, 4, 1}, {{"building", "yes"}})
-        .way(2, {11, 12, 13, 14, 11}, {{"building", edit.use}, {"building:levels", edit.storeys}});
+    TagList tags = {{"building", edit.use}};
+    if (!edit.storeys.empty()) tags.emplace_back("building:levels", edit.storeys);
+    if (!edit.height.empty()) tags.emplace_back("height", edit.height);
+    text.way(1, {1, 2, 3, 4, 1}, {{"building", "yes"}}).way(2, {11, 12, 13, 14, 11}, tags);
     text.way(3, {21, 22, 23, 24, 21}, {{"building", "yes"}});
     text.way(4, {1, 11}, {{"highway", edit.street ? "residential" : "primary"}});
     text.way(5, edit.park ? std::vector<std::int64_t>{31, 32, 33, 34, 31} : std::vector<std::int64_t>{31, 32, 33, 31});
@@ -191,6 +193,9 @@ TEST(ExtractStore, ChangesAreTheObjectsThatDiffer) {
   EXPECT_FALSE(retagged.at("w2").look_only);
   EXPECT_TRUE(changed({.storeys = "4"}).at("w2").look_only);
   EXPECT_FALSE(changed({.use = "shed", .storeys = "4"}).at("w2").look_only);
+  // Which of two outlines in one place is built, the number of tags may decide; which lies above the other, heights.
+  EXPECT_FALSE(changed({.storeys = ""}).at("w2").look_only);
+  EXPECT_FALSE(changed({.height = "9"}).at("w2").look_only);
   // Both places of what was moved: in one cell together, else apart.
   const auto moved = changed({.x = 10});
   ASSERT_EQ(moved.size(), 1u);

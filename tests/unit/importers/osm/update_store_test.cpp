@@ -263,6 +263,19 @@ TEST(UpdateStore, NightsAtRandomGiveWhatIsWrittenAnew) {
   }();
 }
 
+TEST(UpdateStore, AStoreWrittenOverOneLeavesItsFiles) {
+  World world(2);
+  const TempFolder folder;
+  apply_changes(folder.write("base.osm", world.base()), {}, folder.path("0.osm.pbf"));
+  ASSERT_TRUE(write_store(folder.path("0.osm.pbf"), folder.path("store")));
+  const std::string nodes = read_bytes(folder.path("store") + "/nodes");
+  std::filesystem::create_directories(folder.path("new"));
+  std::filesystem::create_hard_link(folder.path("store") + "/nodes", folder.path("new") + "/nodes");
+  apply_changes(folder.path("0.osm.pbf"), std::vector{folder.write("1.osc", world.night())}, folder.path("1.osm.pbf"));
+  ASSERT_TRUE(write_store(folder.path("1.osm.pbf"), folder.path("new")));
+  EXPECT_EQ(read_bytes(folder.path("store") + "/nodes"), nodes);
+}
+
 TEST(UpdateStore, DamagedFilesAreFound) {
   World world(1);
   const TempFolder folder;
