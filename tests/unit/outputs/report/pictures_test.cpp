@@ -104,7 +104,7 @@ TEST(Pictures, AreThreeAndTheSameForAnyNumberOfThreads) {
   for (const int workers : {1, 3}) {
     const PicturePlan plan = all_of(1);
     Pictures pictures(plan);
-    pictures.add(picture_tile(town.region(), plan, 0));
+    pictures.add(pack_picture(picture_tile(town.region(), plan, 0), false));
     const auto taken = pictures.take(workers);
     ASSERT_EQ(taken.size(), 3u);
     for (const outputs::ReportPicture& p : taken) {
@@ -118,6 +118,31 @@ TEST(Pictures, AreThreeAndTheSameForAnyNumberOfThreads) {
     for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(taken[i].png, first[i].png) << i;
     EXPECT_TRUE(pictures.take(1).empty()) << "taken pictures are gone";
   }
+}
+
+TEST(Pictures, AreFoundAgainByTheHashesOfTheirTiles) {
+  const SampleRegion town = SampleRegion::settlement(60, false), other = SampleRegion::settlement(61, false);
+  const PicturePlan plan = all_of(1);
+  std::map<std::string, std::string> kept;
+  int found = 0;
+  base::Memo memo;
+  memo.find = [&](std::string_view, const std::string& key) -> std::optional<std::string> {
+    const auto entry = kept.find(key);
+    if (entry == kept.end()) return std::nullopt;
+    ++found;
+    return entry->second;
+  };
+  memo.keep = [&](std::string_view, const std::string& key, std::string_view bytes) { kept[key] = std::string(bytes); };
+  const auto taken = [&](const SampleRegion& region) {
+    Pictures pictures(plan);
+    pictures.add(pack_picture(picture_tile(region.region(), plan, 0), true));
+    return pictures.take(2, &memo).front().png;
+  };
+  const std::string first = taken(town);
+  EXPECT_EQ(taken(town), first);
+  EXPECT_EQ(found, 1);
+  EXPECT_NE(taken(other), first);
+  EXPECT_EQ(found, 1);
 }
 
 TEST(Pictures, TilesThatAreNotChosenGiveNothing) {
@@ -162,9 +187,9 @@ TEST(Pictures, ShowWindowsAndNearTheSpotEveryElement) {
   EXPECT_GT(tile.detail.triangle_count(), 2 * tile.flat.triangle_count());
 
   Pictures with(plan);
-  with.add(picture_tile(town.region(), plan, 0));
+  with.add(pack_picture(picture_tile(town.region(), plan, 0), false));
   Pictures without(plan);
-  without.add(PictureTile(afar));
+  without.add(pack_picture(afar, false));
   const auto near = with.take(2), far = without.take(2);
   ASSERT_EQ(near.size(), 3u);
   EXPECT_EQ(near[0].png, far[0].png);
@@ -180,7 +205,7 @@ TEST(Pictures, HillsHaveGroundUnderTheirHouses) {
   }
   const PicturePlan plan = all_of(1);
   Pictures pictures(plan);
-  pictures.add(picture_tile(hill.region(), plan, 0));
+  pictures.add(pack_picture(picture_tile(hill.region(), plan, 0), false));
   EXPECT_EQ(pictures.take(2).size(), 3u);
 }
 
