@@ -17,7 +17,7 @@ namespace blockrand::run {
 struct TileReach {
   CellRuns near;  ///< what is measured, classified and built there counts: its blocks, its rows, its features
   CellRuns far;   ///< and, where something asks for them, outlines of what stands in the district cells around
-  CellRuns look;  ///< of what tags say of a building's look: heights, storeys, roofs, years (ChangedObject::look_only)
+  CellRuns look;  ///< of values of tags that say how a building looks: storeys, roofs, years (ChangedObject::look_only)
 };
 
 /// Areas of a coarser level are looked into as a whole: what their tiles hear of would take more room than it is worth.
