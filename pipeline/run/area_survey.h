@@ -23,8 +23,8 @@ struct RegionSurvey {
   std::vector<std::string> unanswered;             ///< DistrictAssigner::unanswered of all areas together
 };
 
-/// Bytes stored of what is read for an area: of more it is cut in four, so that its memory stays within a bound. Of Berlin in 2014 two squares of 6 by
-/// 10 km have 67 and 59 MB, and took up to 680 MB at LoD3; their quarters have at most 50.
+/// Bytes stored of what is read for an area: of more it is cut in four, so that its memory stays within a bound. In a city of
+/// millions two squares of 6 by 10 km had 67 and 59 MB, and took up to 680 MB at LoD3; their quarters have at most 50 (docs/internal/RESULTS.md).
 inline constexpr std::uint64_t kMostStored = 55'000'000;
 /// Finer areas are read around many times over.
 inline constexpr int kFinestAreas = 13;

@@ -12,8 +12,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "importers/osm/apply_changes.h"
-#include "importers/osm/update_store.h"
 #include "pipeline/base/child_process.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/heap.h"
@@ -30,6 +28,7 @@
 #include "pipeline/run/area_overview.h"
 #include "pipeline/run/area_survey.h"
 #include "pipeline/run/build_inputs.h"
+#include "pipeline/run/divide_extract.h"
 #include "pipeline/run/estimate.h"
 #include "pipeline/run/output_place.h"
 #include "pipeline/run/region_state.h"
@@ -77,47 +76,6 @@ AreaOutcome outcome_of(BuildSummary&& s) {
           false,
           false,
           {}};
-}
-
-/// The store of the data of an earlier build, and what is otherwise now.
-struct EarlierStore {
-  std::vector<std::string> files;  ///< in the order of kStoreFiles; empty: there is none
-  std::string nodes_sha256;        ///< of the last one, which no piece of it says
-  std::shared_ptr<const importers::osm::ChangedObjects> changes;
-};
-
-/// The extract as a store, sorted first where it is not. In a process of its own, so that its buffers are gone afterwards.
-/// \param written_because  gets why it was not made from the earlier one, which there is; empty: it was
-/// \returns  its peak of memory, bytes
-std::uint64_t divide(const BuildOptions& options, const std::string& work, const EarlierStore& earlier,
-                     std::string& written_because, base::Progress& progress) {
-  const base::ChildResult result = base::run_in_child(options.input, [&](base::Progress& child) {
-    base::keep_memory_low();
-    std::error_code error;
-    fs::create_directories(work, error);
-    const std::string store = work + "/store", sorted = work + "/sorted.osm.pbf";
-    std::string why;
-    if (!earlier.files.empty()) try {
-        why = base::sha256_file(earlier.files.back()) != earlier.nodes_sha256
-                  ? "it is damaged"
-                  : importers::osm::update_store(earlier.files, *earlier.changes, options.input, store);
-        if (why.empty()) return why;
-      } catch (const base::InputError&) {
-        why = "it is damaged";
-      }
-    fs::remove_all(store, error);  // what was begun may be links to files of the earlier one
-    if (!importers::osm::write_store(options.input, store)) {
-      const importers::osm::AppliedChanges applied = importers::osm::apply_changes(options.input, {}, sorted);
-      if (applied.cleaned_texts)
-        child.warn(told_input(options) + ": NUL characters in its texts were replaced; reports do not repeat that");
-      if (!importers::osm::write_store(sorted, store)) throw std::logic_error("a sorted extract is not sorted");
-      fs::remove(sorted, error);
-    }
-    return why;
-  });
-  for (const std::string& warning : result.warnings) progress.warn(warning);
-  written_because = result.bytes;
-  return result.peak_rss_bytes;
 }
 
 /// Whether a line of the outline of the data, or whether there is any, matters within the window.
