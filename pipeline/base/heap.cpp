@@ -14,7 +14,7 @@ extern "C" int mallctl(const char* name, void* old, std::size_t* old_size, void*
 // page fault for each 4 KB was a tenth of its time. What is free goes back after half a second: else they cost 40 MB at
 // the peak.
 extern "C" const char* malloc_conf;
-const char* malloc_conf = "thp:always,dirty_decay_ms:500,muzzy_decay_ms:0";
+const char* malloc_conf = "thp:always,dirty_decay_ms:5000,muzzy_decay_ms:0";
 
 namespace blockrand::base {
 

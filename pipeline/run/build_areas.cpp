@@ -436,7 +436,7 @@ class AreaBuild {
         [&](std::size_t t, base::Progress& child) {
           const std::size_t i = todo[t];
           const AreaPart part = part_of(i);
-          if (!part.choice.only) base::keep_memory_low();
+          if (!part.choice.only && !std::getenv("BR_NOLOW")) base::keep_memory_low();
           of_area.output = place_of(part.choice.id);
           AreaOutcome outcome;
           try {

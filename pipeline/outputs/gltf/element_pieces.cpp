@@ -6,7 +6,6 @@
 #include <numeric>
 #include <optional>
 #include <span>
-#include <string>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -38,34 +37,49 @@ constexpr double kNormalCosine = 0.9976;
 /// Of places on one wall: components of unit vectors, and m along it or out of it. Frames and grids leave that much.
 constexpr double kSameDirection = 1e-3, kSameColumn = 0.01;
 
-constexpr double kFlat = 1e-6;  ///< m; and of unit vectors
+constexpr double kFlat = 1e-5;   ///< m; single precision leaves a tenth of it
+constexpr double kClean = 1e-6;  ///< of unit vectors
 
 std::array<double, 3> values(const Point3& p) { return {p.x, p.y, p.z}; }
 
 /// Without what rounding left.
-Point3 clean_normal(const Point3& n) {
+Piece::Vector clean_normal(const Point3& n) {
   const auto clean = [](double v) {
-    return std::fabs(v) < kFlat ? 0.0 : std::fabs(v) > 1 - kFlat ? std::copysign(1.0, v) : v;
+    return static_cast<float>(std::fabs(v) < kClean ? 0.0 : std::fabs(v) > 1 - kClean ? std::copysign(1.0, v) : v);
   };
   return {clean(n.x), clean(n.y), clean(n.z)};
 }
 
-bool along_an_axis(const Point3& n) { return (n.x != 0) + (n.y != 0) + (n.z != 0) == 1; }
+bool along_an_axis(const Piece::Vector& n) { return (n.x != 0) + (n.y != 0) + (n.z != 0) == 1; }
 
-void settle(Piece& piece) {
-  Point3 min = piece.vertices.front().position, max = min;
-  piece.upright = true;
-  for (const Piece::Vertex& v : piece.vertices) {
-    const Point3& p = v.position;
-    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
-    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
-    piece.upright = piece.upright && along_an_axis(v.normal);
+/// Around points.
+class Bounds {
+ public:
+  void include(const Point3& p) {
+    if (empty_) min_ = max_ = p;
+    empty_ = false;
+    min_ = {std::min(min_.x, p.x), std::min(min_.y, p.y), std::min(min_.z, p.z)};
+    max_ = {std::max(max_.x, p.x), std::max(max_.y, p.y), std::max(max_.z, p.z)};
   }
-  const Point3 middle = (min + max) * 0.5;
-  const auto half = [](double low, double high) { return high - low > kFlat ? (high - low) / 2 : 0.0; };
-  piece.half = {half(min.x, max.x), half(min.y, max.y), half(min.z, max.z)};
-  for (Piece::Vertex& v : piece.vertices) v.position = v.position - middle;
-  piece.middle = piece.middle + middle;
+  Point3 middle() const { return (min_ + max_) * 0.5; }
+  Point3 half() const {
+    const auto half = [](double low, double high) { return high - low > kFlat ? (high - low) / 2 : 0.0; };
+    return {half(min_.x, max_.x), half(min_.y, max_.y), half(min_.z, max_.z)};
+  }
+
+ private:
+  Point3 min_, max_;
+  bool empty_ = true;
+};
+
+/// About a middle.
+Piece::Vector about(const Point3& middle, const Point3& p) {
+  const Point3 d = p - middle;
+  return {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)};
+}
+
+bool is_upright(std::span<const Piece::Vertex> vertices) {
+  return std::ranges::all_of(vertices, [](const Piece::Vertex& v) { return along_an_axis(v.normal); });
 }
 
 enum Kind : std::uint8_t { filling, trim, sill, reveal, kinds };
@@ -93,76 +107,134 @@ struct KindOfPiece {
   Kind kind = filling;
 };
 
-std::vector<KindOfPiece> pieces_of(const model::ColouredElement& element, const ElementGeometry& geometry) {
+std::vector<KindOfPiece> pieces_of(const model::ColouredElement& element, const ElementGeometry& geometry,
+                                   PieceStore& store) {
   const bool opening = !element.element->opening.outline.empty();
   std::vector<KindOfPiece> out;
+  std::vector<const ElementGeometry::PartTriangles*> parts;  // of the piece
+  std::size_t vertex_count = 0;
   for (int kind = 0; kind < kinds; ++kind) {
-    Piece piece;
     const auto end = [&] {
-      if (piece.indices.empty()) return;
-      settle(piece);
-      out.push_back({std::move(piece), static_cast<Kind>(kind)});
-      piece = {};
+      if (parts.empty()) return;
+      Bounds bounds;
+      std::size_t index_count = 0;
+      for (const auto* part : parts) {
+        for (const ElementVertex& v : part->vertices) bounds.include(v.position);
+        index_count += part->indices.size();
+      }
+      const Point3 middle = bounds.middle();
+      const std::span<Piece::Vertex> vertices = store.add_vertices(vertex_count);
+      const std::span<std::uint16_t> indices = store.add_indices(index_count);
+      std::size_t next = 0, next_index = 0;
+      for (const auto* part : parts) {
+        const std::size_t first = next;
+        const model::PartMaterial& look = element.materials[static_cast<std::size_t>(part->part)];
+        for (const ElementVertex& v : part->vertices)
+          vertices[next++] = {about(middle, v.position), clean_normal(v.exact_normal), look};
+        for (const std::uint32_t i : part->indices) indices[next_index++] = static_cast<std::uint16_t>(first + i);
+      }
+      out.push_back({{vertices, indices, middle, bounds.half(), is_upright(vertices)}, static_cast<Kind>(kind)});
+      parts.clear();
+      vertex_count = 0;
     };
     for (const ElementGeometry::PartTriangles& part : geometry.parts) {
-      if (kind_of(part.part, opening) != kind) continue;
-      if (piece.vertices.size() + part.vertices.size() > ElementGeometry::kMostVertices) end();
-      const auto first = static_cast<std::uint32_t>(piece.vertices.size());
-      const model::PartMaterial& look = element.materials[static_cast<std::size_t>(part.part)];
-      for (const ElementVertex& v : part.vertices)
-        piece.vertices.push_back({v.position, clean_normal(v.exact_normal), look});
-      for (const std::uint32_t i : part.indices) piece.indices.push_back(first + i);
+      if (kind_of(part.part, opening) != kind || part.indices.empty()) continue;
+      if (vertex_count + part.vertices.size() > ElementGeometry::kMostVertices) end();
+      parts.push_back(&part);
+      vertex_count += part.vertices.size();
     }
     end();
   }
   return out;
 }
 
-/// Parts that share no corner, each in one look.
-std::vector<Piece> connected_parts(const Piece& piece) {
-  std::vector<std::uint32_t> root(piece.vertices.size());
-  std::iota(root.begin(), root.end(), 0u);
-  const auto find = [&](std::uint32_t i) {
-    while (root[i] != i) i = root[i] = root[root[i]];
-    return i;
-  };
-  const auto join = [&](std::uint32_t a, std::uint32_t b) {
-    a = find(a), b = find(b);
-    root[std::max(a, b)] = std::min(a, b);
-  };
-  for (std::size_t t = 0; t + 2 < piece.indices.size(); t += 3)
-    join(piece.indices[t], piece.indices[t + 1]), join(piece.indices[t], piece.indices[t + 2]);
-  PointNumbers numbers;
-  numbers.start(piece.vertices.size());
-  for (std::uint32_t i = 0; i < piece.vertices.size(); ++i) {
-    const Piece::Vertex& v = piece.vertices[i];
-    join(i, numbers.first(hash_of(v.position), i, [&](std::uint32_t other) {
-      return piece.vertices[other].position == v.position && piece.vertices[other].look == v.look;
-    }));
+/// Finds the parts of pieces.
+class PartFinder {
+ public:
+  explicit PartFinder(PieceStore& store) : store_(store) {}
+
+  /// Parts that share no corner, each in one look; valid until the next call.
+  std::span<const Piece> connected_parts(const Piece& piece) {
+    const std::size_t n = piece.vertices.size();
+    root_.resize(n);
+    std::iota(root_.begin(), root_.end(), std::uint16_t{0});
+    for (std::size_t t = 0; t + 2 < piece.indices.size(); t += 3)
+      join(piece.indices[t], piece.indices[t + 1]), join(piece.indices[t], piece.indices[t + 2]);
+    numbers_.start(n);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const Piece::Vertex& v = piece.vertices[i];
+      join(i, numbers_.first(hash_of(v.position), i, [&](std::uint32_t other) {
+        return piece.vertices[other].position == v.position && piece.vertices[other].look == v.look;
+      }));
+    }
+
+    used_.assign(n, false);
+    for (const std::uint16_t i : piece.indices) used_[i] = true;
+    part_of_.assign(n, kNone), at_.resize(n);
+    counts_.clear();
+    for (std::uint32_t i = 0; i < n; ++i) {
+      if (!used_[i]) continue;
+      const std::uint32_t r = find(i);
+      if (part_of_[r] == kNone) {
+        part_of_[r] = static_cast<std::uint16_t>(counts_.size());
+        counts_.emplace_back();
+      }
+      Counts& part = counts_[part_of_[r]];
+      at_[i] = static_cast<std::uint16_t>(part.vertices++);
+      part.bounds.include(piece.vertices[i].position);
+    }
+    for (std::size_t t = 0; t < piece.indices.size(); ++t) ++counts_[part_of_[find(piece.indices[t])]].indices;
+
+    std::vector<std::span<Piece::Vertex>> vertices;
+    std::vector<std::span<std::uint16_t>> indices;
+    for (const Counts& part : counts_) {
+      vertices.push_back(store_.add_vertices(part.vertices));
+      indices.push_back(store_.add_indices(part.indices));
+    }
+    for (std::uint32_t i = 0; i < n; ++i) {
+      if (!used_[i]) continue;
+      const std::size_t part = part_of_[find(i)];
+      const Piece::Vertex& v = piece.vertices[i];
+      vertices[part][at_[i]] = {about(counts_[part].bounds.middle(), v.position), v.normal, v.look};
+    }
+    for (Counts& part : counts_) part.indices = 0;
+    for (const std::uint16_t i : piece.indices) {
+      const std::size_t part = part_of_[find(i)];
+      indices[part][counts_[part].indices++] = at_[i];
+    }
+    parts_.clear();
+    for (std::size_t p = 0; p < counts_.size(); ++p)
+      parts_.push_back({vertices[p], indices[p], piece.middle + counts_[p].bounds.middle(), counts_[p].bounds.half(),
+                        is_upright(vertices[p])});
+    return parts_;
   }
 
-  std::vector<Piece> out;
-  std::vector<std::uint32_t> part_of(piece.vertices.size(), model::kNoIndex), index(piece.vertices.size());
-  std::vector<bool> used(piece.vertices.size(), false);
-  for (const std::uint32_t i : piece.indices) used[i] = true;
-  for (std::uint32_t i = 0; i < piece.vertices.size(); ++i) {
-    if (!used[i]) continue;
-    const std::uint32_t r = find(i);
-    if (part_of[r] == model::kNoIndex) {
-      part_of[r] = static_cast<std::uint32_t>(out.size());
-      out.emplace_back();
+ private:
+  struct Counts {
+    std::size_t vertices = 0, indices = 0;
+    Bounds bounds;
+  };
+  static constexpr std::uint16_t kNone = 0xFFFF;  // a piece has at most that many vertices
+
+  std::uint32_t find(std::uint32_t i) {
+    while (root_[i] != i) {
+      root_[i] = root_[root_[i]];
+      i = root_[i];
     }
-    Piece& part = out[part_of[r]];
-    index[i] = static_cast<std::uint32_t>(part.vertices.size());
-    part.vertices.push_back(piece.vertices[i]);
+    return i;
   }
-  for (const std::uint32_t i : piece.indices) out[part_of[find(i)]].indices.push_back(index[i]);
-  for (Piece& part : out) {
-    part.middle = piece.middle;
-    settle(part);
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = find(a), b = find(b);
+    root_[std::max(a, b)] = static_cast<std::uint16_t>(std::min(a, b));
   }
-  return out;
-}
+
+  PieceStore& store_;
+  PointNumbers numbers_;
+  std::vector<std::uint16_t> root_, part_of_, at_;  ///< by vertex; part_of_ of roots
+  std::vector<char> used_;
+  std::vector<Counts> counts_;
+  std::vector<Piece> parts_;
+};
 
 /// The scale along the axes that makes `piece` of `shape`; nothing where none does.
 std::optional<Point3> scale_to(const Piece& piece, const Piece& shape, double tolerance) {
@@ -173,14 +245,14 @@ std::optional<Point3> scale_to(const Piece& piece, const Piece& shape, double to
     scale[k] = from > 0 ? to / from : 1;
   }
   for (std::size_t i = 0; i < piece.vertices.size(); ++i) {
-    const Point3 &p = piece.vertices[i].position, &q = shape.vertices[i].position;
+    const Piece::Vector &p = piece.vertices[i].position, &q = shape.vertices[i].position;
     if (!(std::fabs(q.x * scale[0] - p.x) <= tolerance && std::fabs(q.y * scale[1] - p.y) <= tolerance &&
           std::fabs(q.z * scale[2] - p.z) <= tolerance))
       return std::nullopt;
   }
   const bool turns = !(piece.upright && shape.upright);
   for (std::size_t i = 0; i < piece.vertices.size(); ++i) {
-    const Point3 &n = piece.vertices[i].normal, &m = shape.vertices[i].normal;
+    const Point3 n = piece.vertices[i].normal, m = shape.vertices[i].normal;
     // Some viewers scale normals as they do positions, others by the inverse as they should.
     const Point3 wrong{m.x * scale[0], m.y * scale[1], m.z * scale[2]},
         right{m.x / scale[0], m.y / scale[1], m.z / scale[2]};
@@ -210,37 +282,37 @@ class Shapes {
   /// Sets the shape and scale of uses[number].
   void find(std::vector<Use>& uses, std::size_t number, double tolerance) {
     Use& use = uses[number];
-    std::vector<std::size_t>& like = by_form_[form(use.piece)];
-    for (const std::size_t s : like)
+    std::vector<Form>& forms = by_hash_[hash_of_form(use.piece)];
+    auto form = std::ranges::find_if(
+        forms, [&](const Form& f) { return same_form(uses[list[f.like.front()].first].piece, use.piece); });
+    if (form == forms.end()) form = forms.emplace(form);
+    for (const std::size_t s : form->like)
       if (const auto scale = scale_to(use.piece, uses[list[s].first].piece, tolerance)) {
         use.shape = s;
         use.scale = *scale;
         return;
       }
     use.shape = list.size();
-    like.push_back(use.shape);
+    form->like.push_back(use.shape);
     list.push_back({number, 0});
   }
   std::vector<Shape> list;
 
  private:
-  static std::string form(const Piece& piece) {
-    std::string key;
-    const auto add = [&](const auto& value) { key.append(reinterpret_cast<const char*>(&value), sizeof(value)); };
-    constexpr std::size_t kLook = 16;  // bytes, about
-    key.reserve(sizeof(std::size_t) + piece.indices.size() * sizeof(std::uint32_t) + kLook);
-    add(piece.vertices.size());
-    key.append(reinterpret_cast<const char*>(piece.indices.data()), piece.indices.size() * sizeof(std::uint32_t));
-    const model::PartMaterial* last = nullptr;
-    for (std::size_t i = 0; i < piece.vertices.size(); ++i) {
-      const model::PartMaterial& look = piece.vertices[i].look;
-      if (last && *last == look) continue;
-      last = &look;
-      add(i), add(look.material), add(look.colour.r), add(look.colour.g), add(look.colour.b);
-    }
-    return key;
+  /// Shapes with the same triangles between the same numbers of vertices, which have the same looks.
+  struct Form {
+    std::vector<std::size_t> like;
+  };
+  static std::uint64_t hash_of_form(const Piece& piece) {
+    std::uint64_t hash = base::mix64(piece.vertices.size());
+    for (const std::uint16_t i : piece.indices) hash = (hash ^ i) * 0x100000001b3;  // FNV-1a (Fowler, Noll, Vo)
+    return base::mix64(hash);
   }
-  std::unordered_map<std::string, std::vector<std::size_t>> by_form_;  // never gone through
+  static bool same_form(const Piece& a, const Piece& b) {
+    return a.vertices.size() == b.vertices.size() && std::ranges::equal(a.indices, b.indices) &&
+           std::ranges::equal(a.vertices, b.vertices, {}, &Piece::Vertex::look, &Piece::Vertex::look);
+  }
+  std::unordered_map<std::uint64_t, std::vector<Form>> by_hash_;  // never gone through
 };
 
 double baked_bytes(const Piece& piece) {
@@ -259,21 +331,33 @@ class Planner {
   Planner(const model::Region& region, const std::vector<InstanceGroup>& groups) : groups_(groups) {
     std::vector<std::pair<std::size_t, std::vector<KindOfPiece>>> all;
     std::vector<std::size_t> weight(groups.size(), 0), order;
-    std::unordered_map<const model::Element*, ElementGeometry> geometry;  // of the forms, which come in several colours
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      const model::ColouredElement& element = region.elements.at(groups[g].element);
-      const auto [form, added] = geometry.try_emplace(element.element.get());
-      if (added) form->second = element_geometry(*element.element, true);
-      auto pieces = pieces_of(element, form->second);
-      for (const KindOfPiece& p : pieces) weight[g] += p.piece.triangles() * groups[g].instances.size();
-      if (!pieces.empty()) order.push_back(all.size());
-      all.emplace_back(g, std::move(pieces));
+    // Forms come in several colours: those of one form after each other.
+    std::vector<std::size_t> by_form(groups.size());
+    std::iota(by_form.begin(), by_form.end(), std::size_t{0});
+    {
+      std::unordered_map<const model::Element*, std::size_t> first;
+      std::vector<std::size_t> form;
+      for (std::size_t g = 0; g < groups.size(); ++g)
+        form.push_back(first.try_emplace(region.elements.at(groups[g].element).element.get(), g).first->second);
+      std::ranges::stable_sort(by_form, {}, [&](std::size_t g) { return form[g]; });
     }
+    all.resize(groups.size());
+    const model::Element* known = nullptr;
+    ElementGeometry geometry;
+    for (const std::size_t g : by_form) {
+      const model::ColouredElement& element = region.elements.at(groups[g].element);
+      if (known != element.element.get()) geometry = element_geometry(*element.element, true);
+      known = element.element.get();
+      all[g] = {g, pieces_of(element, geometry, store_)};
+      for (const KindOfPiece& p : all[g].second) weight[g] += p.piece.triangles() * groups[g].instances.size();
+    }
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      if (!all[g].second.empty()) order.push_back(g);
     // The most popular first: others are told as they are.
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return weight[a] > weight[b]; });
     for (const std::size_t i : order)
       for (KindOfPiece& p : all[i].second) {
-        uses_.push_back({all[i].first, std::move(p.piece), 0, {1, 1, 1}, {}});
+        uses_.push_back({all[i].first, p.piece, 0, {1, 1, 1}, {}});
         whole_.find(uses_, uses_.size() - 1, p.kind == reveal ? kRevealTolerance : kPieceTolerance);
         whole_.list[uses_.back().shape].places += places(uses_.back());
       }
@@ -336,12 +420,12 @@ class Planner {
 
   /// Finds the parts of what some plan may not place as a whole.
   void divide(const std::vector<std::size_t>& rank, std::size_t fewest) {
-    for (std::size_t u = 0; u < uses_.size(); ++u) {
-      Use& use = uses_[u];
+    PartFinder finder(store_);
+    for (Use& use : uses_) {
       if (rank[use.shape] < fewest && saved_by(whole_, uses_, use.shape) > 0) continue;
-      for (Piece& part : connected_parts(use.piece)) {
+      for (const Piece& part : finder.connected_parts(use.piece)) {
         use.parts.push_back(parts_.size());
-        parts_.push_back({use.group, std::move(part), 0, {1, 1, 1}, {}});
+        parts_.push_back({use.group, part, 0, {1, 1, 1}, {}});
         part_.find(parts_, parts_.size() - 1, kRevealTolerance);
       }
     }
@@ -372,10 +456,11 @@ class Planner {
         if (number[parts_[p].shape] != model::kNoIndex)
           add_places(out.placed[number[parts_[p].shape]], parts_[p]);
         else
-          out.baked.push_back({std::move(parts_[p].piece), &groups_[use.group].instances});
+          out.baked.push_back({parts_[p].piece, &groups_[use.group].instances});
       }
     }
     for (PlacedPiece& p : out.placed) sort_places(p.places);
+    out.store = std::move(store_);
     return out;
   }
 
@@ -423,6 +508,7 @@ class Planner {
   }
 
   const std::vector<InstanceGroup>& groups_;
+  PieceStore store_;
   std::vector<Use> uses_, parts_;
   Shapes whole_, part_;
 };

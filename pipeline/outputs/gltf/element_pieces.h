@@ -1,8 +1,10 @@
 // Elements of a tile in pieces that few draws show: which pieces are placed, and which become part of the tile's mesh.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "pipeline/model/region.h"
@@ -13,18 +15,55 @@ namespace blockrand::outputs {
 /// What one draw shows of an element: the filling of an opening, its reveal, its trim, its sill; or a connected part of
 /// these in one look. About its middle, in the axes of the element.
 struct Piece {
+  /// Single precision: a dense tile has a million of them, and about the middle of a window it is off by less than a thousandth of a
+  /// millimetre.
+  struct Vector {
+    float x = 0, y = 0, z = 0;
+    bool operator==(const Vector&) const = default;
+    operator model::Point3() const { return {x, y, z}; }
+  };
   struct Vertex {
-    model::Point3 position;  ///< m
-    model::Point3 normal;    ///< unit vector
+    Vector position;  ///< m
+    Vector normal;    ///< unit vector
     model::PartMaterial look;
   };
-  std::vector<Vertex> vertices;
-  std::vector<std::uint32_t> indices;  ///< counter-clockwise triangles
-  model::Point3 middle;                ///< m, in the element's frame
-  model::Point3 half;                  ///< m, half of its size; 0 where it is flat
-  bool upright = false;                ///< all normals lie along an axis: a scale along the axes turns none
+  std::span<const Vertex> vertices;        ///< of a PiecePlan
+  std::span<const std::uint16_t> indices;  ///< counter-clockwise triangles
+  model::Point3 middle;                    ///< m, in the element's frame
+  model::Point3 half;                      ///< m, half of its size; 0 where it is flat
+  bool upright = false;                    ///< all normals lie along an axis: a scale along the axes turns none
 
   std::size_t triangles() const { return indices.size() / 3; }
+};
+
+/// Vertices and indices of pieces, in large blocks that stay where they are.
+class PieceStore {
+ public:
+  /// Room for `count` more in one stretch.
+  std::span<Piece::Vertex> add_vertices(std::size_t count) { return vertices_.add(count); }
+  std::span<std::uint16_t> add_indices(std::size_t count) { return indices_.add(count); }
+
+ private:
+  template <class T>
+  class Blocks {
+   public:
+    std::span<T> add(std::size_t count) {
+      if (blocks_.empty() || count > blocks_.back().capacity() - blocks_.back().size()) {
+        blocks_.emplace_back();
+        blocks_.back().reserve(std::max(count, kBlock));
+      }
+      std::vector<T>& block = blocks_.back();
+      const std::size_t first = block.size();
+      block.resize(first + count);
+      return std::span(block).subspan(first);
+    }
+
+   private:
+    static constexpr std::size_t kBlock = std::size_t{1} << 15;
+    std::vector<std::vector<T>> blocks_;  // a block is never longer than what it was given at first
+  };
+  Blocks<Piece::Vertex> vertices_;
+  Blocks<std::uint16_t> indices_;
 };
 
 /// m. A placed piece is another one scaled along its axes. Its ends are exact, and a corner between them, the edge of a
@@ -53,6 +92,7 @@ struct BakedPiece {
 struct PiecePlan {
   std::vector<PlacedPiece> placed;  ///< those that save the most bytes first
   std::vector<BakedPiece> baked;
+  PieceStore store;  ///< what their pieces point into
 };
 
 /// Divides elements into pieces and finds equal ones, so that at most `most` shapes are placed and the file is small:

@@ -230,7 +230,7 @@ void bake_piece(const BakedPiece& baked, Mesh& mesh, Primitives& primitives) {
       const model::Point3 n = turn(v.normal);
       MeshVertex vertex;
       vertex.position = static_cast<std::uint32_t>(mesh.positions.size());
-      mesh.positions.push_back(on_tile_grid(at.origin) + on_tile_grid(turn(piece.middle + v.position)));
+      mesh.positions.push_back(on_tile_grid(at.origin) + on_tile_grid(turn(piece.middle + model::Point3(v.position))));
       vertex.feature = at.feature;
       vertex.look = v.look;
       const auto quantise = [](double c) { return static_cast<std::int8_t>(std::nearbyint(c * 127)); };

@@ -102,8 +102,8 @@ class PieceWriter {
     for (const Piece::Vertex& v : shape.vertices) {
       for (const double p : {v.position.x * units.x, v.position.y * units.y, v.position.z * units.z, 0.0})
         block.positions.push_back(static_cast<std::int16_t>(std::nearbyint(p)));
-      for (const double n : {v.normal.x, v.normal.y, v.normal.z, 0.0})
-        block.normals.push_back(static_cast<std::int8_t>(std::nearbyint(n * 127)));
+      for (const float n : {v.normal.x, v.normal.y, v.normal.z, 0.0F})
+        block.normals.push_back(static_cast<std::int8_t>(std::nearbyint(double{n} * 127)));
       const model::Colour& c = v.look.colour;
       block.colours.insert(block.colours.end(),
                            {kLinearLight[c.r], kLinearLight[c.g], kLinearLight[c.b], std::uint16_t{65535}});

@@ -535,9 +535,10 @@ TEST(DetailGlb, PiecesShowEveryElementWhereItStands) {
   }
   std::sort(corners.begin(), corners.end());
   const auto stands = [&](const model::Point3& p, std::uint32_t feature) {
-    auto at = std::lower_bound(corners.begin(), corners.end(), std::array<double, 4>{p.x - kPieceTolerance - 1e-9});
-    for (; at != corners.end() && (*at)[0] <= p.x + kPieceTolerance + 1e-9; ++at)
-      if (std::fabs((*at)[1] - p.y) <= kPieceTolerance + 1e-9 && std::fabs((*at)[2] - p.z) <= kPieceTolerance + 1e-9 &&
+    constexpr double kWithin = kPieceTolerance + 1e-6;  // m: vertices of pieces have single precision
+    auto at = std::lower_bound(corners.begin(), corners.end(), std::array<double, 4>{p.x - kWithin});
+    for (; at != corners.end() && (*at)[0] <= p.x + kWithin; ++at)
+      if (std::fabs((*at)[1] - p.y) <= kWithin && std::fabs((*at)[2] - p.z) <= kWithin &&
           (*at)[3] == feature)
         return true;
     return false;
