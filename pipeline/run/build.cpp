@@ -189,8 +189,8 @@ void note_tile(WorkCache& cache, const std::string& tile, const TileKey& key, st
 }
 
 /// Buildings that an area works on at a time at LoD3, where tiles have as many (own choice: two of the largest tiles of a dense city took
-/// 440 MB beside each other).
-constexpr std::size_t kMostBuildingsAtATime = 200;
+/// 440 MB beside each other); and one with room for two such tiles.
+constexpr std::size_t kMostBuildingsAtATime = 200, kMostWithRoom = 700;
 
 /// What working on `todo` would do: nothing is worked on.
 void plan_tiles(std::span<const TileToTell> todo, const TileKeys* keys, WorkCache* cache, int workers,
@@ -490,7 +490,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   base::ItemLoad load;
   if (record.area && options.lod >= 3)
     load = {[&](std::size_t i) { return todo[i].shard ? shards[*todo[i].shard].seeds.size() : 0; },
-            kMostBuildingsAtATime};
+            part && part->roomy ? kMostWithRoom : kMostBuildingsAtATime};
   base::ordered_parallel(todo.size(), workers, in_flight, work, consume, load);
   sums.settle(record);
   warn_of_terrain(inputs, progress);

@@ -48,6 +48,9 @@ using model::TileId;
 constexpr std::uint64_t kAreaBase = 160'000'000;
 constexpr double kPerStoredByte = 9;
 
+/// Bytes stored around an area up to which it need not be careful of memory: such areas stay below 400 MB all the same.
+constexpr std::uint64_t kRoomy = 25'000'000;
+
 /// What an area's process sends back beside its files.
 struct AreaOutcome {
   std::uint64_t tiles_built = 0, tiles_kept = 0;
@@ -214,6 +217,7 @@ class AreaBuild {
     for (const TileId& tile : tiles) {
       AreaPart& part = parts_.emplace_back(AreaPart{store, choose_area(tile, survey_.facts)});
       const importers::osm::StoredPart stored = store.part(part.choice.window);
+      part.roomy = stored.bytes <= kRoomy;
       largest = std::max(largest, stored.bytes);
       part.choice.placeless = parts_.size() == 1 && store.has_placeless();
       base::Packer key;
@@ -319,6 +323,7 @@ class AreaBuild {
     } catch (const base::UnpackError&) {
       return;
     }
+    part.roomy = true;  // work on most of its tiles is kept
     AreaChanges concerned = concerned_tiles(part.choice, reaches, changes, rules, projection);
     why_whole_[i] = std::move(concerned.why_whole);
     if (concerned.tiles.empty() && why_whole_[i].empty())
@@ -436,7 +441,7 @@ class AreaBuild {
         [&](std::size_t t, base::Progress& child) {
           const std::size_t i = todo[t];
           const AreaPart part = part_of(i);
-          if (!part.choice.only && !std::getenv("BR_NOLOW")) base::keep_memory_low();
+          if (!part.roomy) base::keep_memory_low();
           of_area.output = place_of(part.choice.id);
           AreaOutcome outcome;
           try {

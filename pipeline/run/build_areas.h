@@ -26,6 +26,7 @@ struct AreaPart {
   TileChoice choice;
   std::string record_key = {};  ///< under which the records of its tiles are kept; empty: they are not
   std::string before_key = {};  ///< with TileChoice::only: under which those of the other tiles lie
+  bool roomy = false;           ///< its work needs so little memory that speed counts more
 };
 
 /// What lies around the tiles that are looked into does not suffice, or work on the others is not kept any more: the area is to be
