@@ -70,11 +70,21 @@ std::vector<StoredArea> ExtractStore::areas(int level) const {
 
 model::Extract ExtractStore::read(const ReadOptions& options, bool placeless) const {
   constexpr std::array<double, 4> kGlobe{-180, -90, 180, 90};
-  const std::array<double, 4> window = options.bbox.value_or(kGlobe);
-  std::vector<const CellEntry*> cells = state_->cells_of(window);
+  std::vector<Box> windows;
+  std::vector<const CellEntry*> cells;
+  const auto add = [&](const std::array<double, 4>& window) {
+    windows.push_back(box_of(window));
+    const std::vector<const CellEntry*> its = state_->cells_of(window);
+    cells.insert(cells.end(), its.begin(), its.end());
+  };
+  std::ranges::for_each(options.parts, add);
+  if (options.parts.empty()) add(options.bbox.value_or(kGlobe));
+  std::ranges::sort(cells);  // as they lie in the index
+  const auto twice = std::ranges::unique(cells);
+  cells.erase(twice.begin(), twice.end());
   if (const CellEntry* entry = placeless ? state_->find(nowhere()) : nullptr) cells.push_back(entry);
   OsmFile file(state_->objects, [&](osmium::osm_entity_bits::type type, const OsmFile::Visit& visit) {
-    state_->for_each(cells, box_of(window), type, visit);
+    state_->for_each(cells, windows, type, visit);
   });
   ReadOptions of_window = options;
   of_window.placeless = placeless;

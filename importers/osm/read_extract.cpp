@@ -44,15 +44,18 @@ class ExtractWriter {
       const auto unit = [](double degrees) {
         return static_cast<std::int64_t>(degrees * 1e7 + (degrees < 0 ? -0.5 : 0.5));
       };
-      const auto& b = *options.bbox;
-      clip_ = Box{unit(b[0]), unit(b[1]), unit(b[2]), unit(b[3])};
+      const auto clip = [&](const std::array<double, 4>& b) {
+        clip_.push_back({unit(b[0]), unit(b[1]), unit(b[2]), unit(b[3])});
+      };
+      std::ranges::for_each(options.parts, clip);
+      if (options.parts.empty()) clip(*options.bbox);
       placeless_ = options.placeless;
     }
   }
 
   void write_buildings(const Accounts& accounts) {
     std::vector<bool> kept(accounts.list.size(), true);
-    if (clip_) decide_clip(accounts, kept);
+    if (!clip_.empty()) decide_clip(accounts, kept);
     out_.buildings.reserve(accounts.list.size());
     // Nearly everything read is written: growing by doubling would cost half as much again.
     out_.tags.reserve(data_.tags.size());
@@ -80,7 +83,7 @@ class ExtractWriter {
   void write_features(const Accounts& accounts) {
     std::vector<model::ReportRow> notices;
     for_each_feature(data_, accounts, notices, [&](const PlannedFeature& f) {
-      if (clip_ && !touches(f)) return;
+      if (!clip_.empty() && !touches(f)) return;
       model::Feature feature;
       feature.id = f.id;
       feature.kinds = f.kinds;
@@ -240,7 +243,7 @@ class ExtractWriter {
     return range;
   }
 
-  /// Which accounts lie in the clip box: those with a position by the centre of their own bounding box, those that
+  /// Which accounts lie in the clip boxes: those with a position by the centre of their own bounding box, those that
   /// another object stands for with that object.
   void decide_clip(const Accounts& accounts, std::vector<bool>& kept) const {
     const auto centre_inside = [&](const Account& account) {
@@ -248,7 +251,9 @@ class ExtractWriter {
       if (box.empty()) return placeless_;
       // Doubled, so that the centre is exact.
       const std::int64_t x = box.west + box.east, y = box.south + box.north;
-      return x >= 2 * clip_->west && x <= 2 * clip_->east && y >= 2 * clip_->south && y <= 2 * clip_->north;
+      return std::ranges::any_of(clip_, [&](const Box& clip) {
+        return x >= 2 * clip.west && x <= 2 * clip.east && y >= 2 * clip.south && y <= 2 * clip.north;
+      });
     };
     for (std::size_t i = 0; i < accounts.list.size(); ++i) {
       const Account& account = accounts.list[i];
@@ -282,14 +287,15 @@ class ExtractWriter {
     Box box;
     for (const AreaRing& ring : f.rings)
       for (const Vertex& v : ring.vertices) box.add(v.location);
-    return !box.empty() && box.west <= clip_->east && box.east >= clip_->west && box.south <= clip_->north &&
-           box.north >= clip_->south;
+    return !box.empty() && std::ranges::any_of(clip_, [&](const Box& clip) {
+      return box.west <= clip.east && box.east >= clip.west && box.south <= clip.north && box.north >= clip.south;
+    });
   }
 
   const RawData& data_;
   const OsmFile& file_;
   model::Extract& out_;
-  std::optional<Box> clip_;
+  std::vector<Box> clip_;  ///< empty: everything is kept
   bool placeless_ = false;
   std::vector<Text> texts_;  ///< by raw string id
   std::deque<std::string> cleaned_;

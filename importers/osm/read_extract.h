@@ -20,6 +20,8 @@ struct ReadOptions {
   /// raw bounding box lies inside (a duplicate or represented object follows the one that stands for it; one without
   /// any known position is dropped), a feature when its bounding box touches. Counts of buildings are those kept.
   std::optional<std::array<double, 4>> bbox;
+  /// Boxes within `bbox`: what is in none of them is not kept; empty: all of it.
+  std::vector<std::array<double, 4>> parts;
   bool placeless = false;  ///< with `bbox`: buildings without any known position are kept all the same
 };
 

@@ -47,13 +47,15 @@ void StoreReader::visit_cell(const CellEntry& cell, Kind kind, std::ifstream& in
   }
 }
 
-osmium::memory::Buffer StoreReader::load(const CellEntry& cell, Kind kind, const Box& window, std::ifstream& in) const {
+osmium::memory::Buffer StoreReader::load(const CellEntry& cell, Kind kind, std::span<const Box> windows,
+                                         std::ifstream& in) const {
   std::size_t size = 0;
   for (const Chunk& c : cell.chunks)
     if (c.kind == kind) size += c.bytes;
   osmium::memory::Buffer buffer(std::max<std::size_t>(size, 64), osmium::memory::Buffer::auto_grow::yes);
   visit_cell(cell, kind, in, [&](const Box& box, std::string_view object) {
-    if (!window.empty() && !box.empty() && !box.meets(window)) return;
+    if (!windows.empty() && !box.empty() && std::ranges::none_of(windows, [&](const Box& w) { return box.meets(w); }))
+      return;
     std::memcpy(buffer.reserve_space(object.size()), object.data(), object.size());
     buffer.commit();
   });
@@ -99,7 +101,7 @@ std::vector<const CellEntry*> StoreReader::cells_of(const std::array<double, 4>&
   return out;
 }
 
-void StoreReader::for_each(const std::vector<const CellEntry*>& cells, const Box& window,
+void StoreReader::for_each(const std::vector<const CellEntry*>& cells, std::span<const Box> windows,
                            osmium::osm_entity_bits::type type,
                            const std::function<void(const OSMObject&)>& visit) const {
   std::ifstream in(objects, std::ios::binary);
@@ -111,8 +113,8 @@ void StoreReader::for_each(const std::vector<const CellEntry*>& cells, const Box
     if ((type & bit) == osmium::osm_entity_bits::nothing) continue;
     std::vector<osmium::memory::Buffer> buffers;
     for (const CellEntry* cell : cells) {
-      buffers.push_back(load(*cell, kinds[0], window, in));
-      if (kinds[1] != kinds[0]) buffers.push_back(load(*cell, kinds[1], window, in));
+      buffers.push_back(load(*cell, kinds[0], windows, in));
+      if (kinds[1] != kinds[0]) buffers.push_back(load(*cell, kinds[1], windows, in));
     }
     std::vector<const OSMObject*> order;
     for (const osmium::memory::Buffer& buffer : buffers)

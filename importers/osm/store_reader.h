@@ -6,6 +6,7 @@
 #include <functional>
 #include <osmium/memory/buffer.hpp>
 #include <osmium/osm/entity_bits.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,14 +29,14 @@ struct StoreReader {
   /// Calls `visit` for each object of one kind of a cell, one list after the other, with its box. \throws base::InputError
   void visit_cell(const CellEntry& cell, Kind kind, std::ifstream& in,
                   const std::function<void(const Box&, std::string_view object)>& visit) const;
-  /// The objects of one kind, one after the other. \param window  empty: all
-  osmium::memory::Buffer load(const CellEntry& cell, Kind kind, const Box& window, std::ifstream& in) const;
+  /// The objects of one kind, one after the other. \param windows  empty: all
+  osmium::memory::Buffer load(const CellEntry& cell, Kind kind, std::span<const Box> windows, std::ifstream& in) const;
   const CellEntry* find(const model::TileId& tile) const;
   /// Those whose objects may meet the window, ascending. \param window  west, south, east, north in degrees
   std::vector<const CellEntry*> cells_of(const std::array<double, 4>& window) const;
-  /// \param window  what does not meet it may be left out; empty: nothing is
-  void for_each(const std::vector<const CellEntry*>& cells, const Box& window, osmium::osm_entity_bits::type type,
-                const std::function<void(const osmium::OSMObject&)>& visit) const;
+  /// \param windows  what meets none of them may be left out; empty: nothing is
+  void for_each(const std::vector<const CellEntry*>& cells, std::span<const Box> windows,
+                osmium::osm_entity_bits::type type, const std::function<void(const osmium::OSMObject&)>& visit) const;
 };
 
 }  // namespace blockrand::importers::osm::store_layout

@@ -10,9 +10,41 @@
 namespace blockrand::run {
 namespace {
 
+using geometry::PlanBox;
 using model::TileId;
 
-AreaChanges look_into_all(std::string why) { return {{}, {}, std::move(why)}; }
+AreaChanges look_into_all(std::string why) { return {{}, {}, {}, {}, std::move(why)}; }
+
+double size(const PlanBox& box) {
+  return box.empty() ? 0 : (box.maximum.x - box.minimum.x) * (box.maximum.y - box.minimum.y);
+}
+double size(const std::array<double, 4>& w) { return std::max(0.0, w[2] - w[0]) * std::max(0.0, w[3] - w[1]); }
+
+PlanBox around(PlanBox box, const PlanBox& other) {
+  box.include(other);
+  return box;
+}
+
+/// Boxes that hold all of these, of which each lies in one: those that cost less together become one.
+std::vector<PlanBox> joined(std::vector<PlanBox> boxes) {
+  // Of what both would read: what lies in two boxes is read once, and there is work for each box.
+  constexpr double kWorthIt = 1.1;
+  for (bool again = true; again;) {
+    again = false;
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      for (std::size_t k = i + 1; k < boxes.size();) {
+        const PlanBox both = around(boxes[i], boxes[k]);
+        if (size(both) > kWorthIt * (size(boxes[i]) + size(boxes[k]) - size(common(boxes[i], boxes[k])))) {
+          ++k;
+          continue;
+        }
+        boxes[i] = both;
+        boxes.erase(boxes.begin() + static_cast<std::ptrdiff_t>(k));
+        again = true;
+      }
+  }
+  return boxes;
+}
 
 TileId tile_at(double lon, double lat) {
   constexpr double kUnits = 1e7;
@@ -26,8 +58,8 @@ TileId tile_at(double lon, double lat) {
 AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
                             std::span<const importers::osm::ChangedObject> changes, const RulesReach& rules,
                             const georef::Projection& projection) {
-  std::set<TileId> tiles;
-  geometry::PlanBox needed;
+  AreaChanges out;
+  std::vector<PlanBox> needed;
   const georef::GeoBox own = georef::bounds(area.id);
   const auto& all = area.window;
   for (const importers::osm::ChangedObject& change : changes) {
@@ -41,8 +73,10 @@ AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
     constexpr double kBent = 1;  // m: sides of the box of an object in the projection
     for (const auto& [tile, reach] : reaches)
       if (look_only ? reach.look.near(box, kBent)
-                    : (change.building && reach.far.near(box, kBent)) || reach.near.near(box, beyond + kBent))
-        tiles.insert(tile);
+                    : (change.building && reach.far.near(box, kBent)) || reach.near.near(box, beyond + kBent)) {
+        out.tiles.insert(tile);
+        if (change.network) out.other_network.insert(tile);
+      }
     // Tiles that may tell of it for the first time.
     const std::array<double, 4> here{std::max(change.box[0], own.west), std::max(change.box[1], own.south),
                                      std::min(change.box[2], own.east), std::min(change.box[3], own.north)};
@@ -54,29 +88,40 @@ AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
     for (std::uint32_t y = low.y; y <= high.y; ++y)
       for (std::uint32_t x = low.x; x <= high.x; ++x)
         if (const TileId tile{footprints::kTileLevel, x, y}; georef::contains(area.id, tile)) {
-          tiles.insert(tile);
+          out.tiles.insert(tile);
+          if (change.network) out.other_network.insert(tile);
           const georef::GeoBox b = georef::bounds(tile);
           const geometry::PlanBox ground = projected_box({b.west, b.south, b.east, b.north}, projection);
           const CellRuns alone{{}, ground};
-          needed.include(needed_around({alone, alone, alone}, rules.metres));
-          needed.include(box);
+          needed.push_back(around(needed_around({alone, ground, alone, alone}, rules.metres, true), box));
         }
   }
-  if (tiles.empty()) return {};
-  for (const TileId& tile : tiles)
+  if (out.tiles.empty()) return {};
+  for (const TileId& tile : out.tiles)
     if (const auto reach = reaches.find(tile); reach != reaches.end())
-      needed.include(needed_around(reach->second, rules.metres));
+      needed.push_back(needed_around(reach->second, rules.metres, out.other_network.contains(tile)));
   // Outlines that changed may reach a little further than before.
-  constexpr double kMore = 300;  // m
-  needed.minimum = {needed.minimum.x - kMore, needed.minimum.y - kMore};
-  needed.maximum = {needed.maximum.x + kMore, needed.maximum.y + kMore};
-  const std::array<double, 4> around = window_around(needed, projection);
-  const std::array<double, 4> window{std::max(around[0], all[0]), std::max(around[1], all[1]),
-                                     std::min(around[2], all[2]), std::min(around[3], all[3])};
-  constexpr double kMostOfAll = 0.6;  // of what is read for the area: above it looking twice would cost more
-  const auto size = [](const std::array<double, 4>& w) { return (w[2] - w[0]) * (w[3] - w[1]); };
-  if (size(window) > kMostOfAll * size(all)) return look_into_all("most of it is concerned");
-  return {std::move(tiles), window, {}};
+  constexpr double kMore = 150;  // m
+  for (PlanBox& box : needed) {
+    box.minimum = {box.minimum.x - kMore, box.minimum.y - kMore};
+    box.maximum = {box.maximum.x + kMore, box.maximum.y + kMore};
+  }
+  double read = 0;
+  for (const PlanBox& box : joined(std::move(needed))) {
+    const std::array<double, 4> asked = window_around(box, projection);
+    const std::array<double, 4> part{std::max(asked[0], all[0]), std::max(asked[1], all[1]), std::min(asked[2], all[2]),
+                                     std::min(asked[3], all[3])};
+    if (part[0] > part[2] || part[1] > part[3]) continue;
+    read += size(part);
+    if (out.parts.empty()) out.window = part;
+    out.window = {std::min(out.window[0], part[0]), std::min(out.window[1], part[1]), std::max(out.window[2], part[2]),
+                  std::max(out.window[3], part[3])};
+    out.parts.push_back(part);
+  }
+  // Of what is read for the area: above it little is saved, and sometimes it is looked into twice.
+  constexpr double kMostOfAll = 0.85;
+  if (read > kMostOfAll * size(all)) return look_into_all("most of it is concerned");
+  return out;
 }
 
 }  // namespace blockrand::run

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "importers/osm/extract_store.h"
 #include "pipeline/georef/tiles.h"
@@ -68,8 +69,8 @@ class Reaches {
     // Tagged neighbours speak for houses without tags. What is measured of a house reads no tags but its own (features.h).
     PlanCells look = mine;
     touch(look, kBeside);
+    // What must be classified and measured is what evidence::needed_for says of an area.
     PlanCells styled = mine;
-    add_blocks(styled);
     touch(styled, kBeside);
     for (int round = 0; round < std::max(1, tables.smoothing.rounds); ++round)
       touch(look, classify::kNearReach), touch(styled, classify::kNearReach);
@@ -87,17 +88,19 @@ class Reaches {
     touch(measured, heard);
     add_blocks(styled);
     measured.include(styled);
+    measured.include(blocks);
     PlanCells far = measured;
     if (asks_town_) far.grow(kTownReach);
     // Features of houses: what stands around, and what that needs of its own surroundings.
     PlanCells near = std::move(measured);
     touch(near, classify::kNearReach);
     touch(near, context::kWallSegmentReach);
-    add_blocks(near);
     near.include(look);
     far.include(near);
     add(rows_, near), add(rows_, far);
-    return {near.runs(), far.runs(), look.runs()};
+    CellRuns runs = near.runs();
+    add_blocks(near);  // whose corners say which buildings stand at their streets
+    return {std::move(runs), near.runs().box, far.runs(), look.runs()};
   }
 
  private:
@@ -217,9 +220,13 @@ PlanBox common(const PlanBox& a, const PlanBox& b) {
   return box.minimum.y > box.maximum.y ? PlanBox() : box;
 }
 
-PlanBox needed_around(const TileReach& reach, double rules) {
+PlanBox needed_around(const TileReach& reach, double rules, bool other_network) {
+  // Streets around blocks lie on their edge.
+  constexpr double kAroundBlocks = 200;  // m
+  // Rules look from the tile's own buildings, around which TileReach::near reaches at least so far (Reaches::reach).
+  constexpr double kLeastNear = 3 * classify::kNearReach;  // m
   PlanBox out = reach.far.box;
-  out.include(grown(reach.near.box, std::max(kNetworkReach, rules)));
+  out.include(grown(reach.blocks, std::max(other_network ? kNetworkReach : kAroundBlocks, rules - kLeastNear)));
   return out;
 }
 

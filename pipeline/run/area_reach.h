@@ -16,6 +16,7 @@ namespace blockrand::run {
 /// In the build CRS.
 struct TileReach {
   CellRuns near;  ///< what is measured, classified and built there counts: its blocks, its rows, its features
+  geometry::PlanBox blocks;  ///< m, around `near` and the blocks of the buildings there
   CellRuns far;   ///< and, where something asks for them, outlines of what stands in the district cells around
   CellRuns look;  ///< of values of tags that say how a building looks: storeys, roofs, years (ChangedObject::look_only)
 };
@@ -50,8 +51,9 @@ double rules_reach(const districts::RuleSets& book);
 bool holds(const geometry::PlanBox& outer, const geometry::PlanBox& inner);
 geometry::PlanBox common(const geometry::PlanBox& a, const geometry::PlanBox& b);
 
-/// What must be read for the work on tiles with these reaches. \param rules  m, how far district rules look at most
-geometry::PlanBox needed_around(const TileReach& reach, double rules);
+/// What must be read for the work on a tile with this reach. \param rules  m, how far district rules look at most
+/// \param other_network  streets or the like changed there: blocks may reach further than before
+geometry::PlanBox needed_around(const TileReach& reach, double rules, bool other_network);
 
 /// The largest box in metres that lies within a window of degrees, about; empty where there is none.
 geometry::PlanBox within_window(const std::array<double, 4>& window, const georef::Projection& projection);

@@ -1,5 +1,6 @@
 #include "pipeline/run/area_tiles.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
@@ -29,7 +30,8 @@ void note_reaches(const TileChoice& area, const ReachInputs& inputs, AreaRecord&
   std::vector<model::TileId> tiles;
   for (const auto& [tile, told] : records)
     if (!area.only || area.only->contains(tile)) tiles.push_back(tile);
-  const geometry::PlanBox read = within_window(area.window, inputs.located.projection);
+  std::vector<geometry::PlanBox> read;
+  for (const auto& part : area.parts) read.push_back(within_window(part, inputs.located.projection));
   // What counts for an area lies within this (kHalo), however far boxes of boxes reach.
   constexpr double kBent = 100;  // m: sides of windows are, in the projection
   const georef::GeoBox halo = georef::with_halo(area.id, kHalo - kBent);
@@ -37,7 +39,10 @@ void note_reaches(const TileChoice& area, const ReachInputs& inputs, AreaRecord&
       within_window({halo.west, halo.south, halo.east, halo.north}, inputs.located.projection);
   for (const auto& [tile, reach] : reaches_of(inputs, tiles)) {
     records[tile].reach = reach;
-    if (area.only && !holds(read, common(most, needed_around(reach, rules_reach(inputs.book)))))
+    if (!area.only) continue;
+    const geometry::PlanBox needed =
+        common(most, needed_around(reach, rules_reach(inputs.book), area.other_network.contains(tile)));
+    if (std::ranges::none_of(read, [&](const geometry::PlanBox& part) { return holds(part, needed); }))
       throw WindowTooSmall("tile " + text_of(tile) + " hears of more");
   }
 }

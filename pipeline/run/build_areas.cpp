@@ -337,6 +337,7 @@ class AreaBuild {
     AreaPart part = parts_[i];
     if (const auto look = looks_.find(i); look != looks_.end())
       part.choice.only = look->second.changes.tiles, part.choice.window = look->second.changes.window,
+      part.choice.parts = look->second.changes.parts, part.choice.other_network = look->second.changes.other_network,
       part.before_key = look->second.before;
     return part;
   }

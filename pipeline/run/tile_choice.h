@@ -34,6 +34,8 @@ struct TileChoice {
   RegionFacts facts;                            ///< of the whole extract
   std::optional<outputs::ReadImagery> imagery;  ///< what the build of the whole saw in its images
   std::array<double, 4> window{};  ///< west, south, east, north in degrees: the tile and its halo, all that is read
+  std::vector<std::array<double, 4>> parts;  ///< with `only`: of the window what is read; empty: all
+  std::set<model::TileId> other_network;     ///< of `only`: those near which streets or the like changed
 };
 
 /// The area's window. \param facts  of the whole

@@ -123,7 +123,9 @@ void for_each_entry(const std::string& folder, Visit&& visit) {
     std::vector<fs::path> out;
     std::error_code error;
     for (fs::directory_iterator entry(place, error), end; !error && entry != end; entry.increment(error))
-      if (std::error_code no_status; fs::is_directory(entry->symlink_status(no_status))) out.push_back(entry->path());
+      // Asked of the entry and not of its path: the folder that lists it says it, for most file systems.
+      if (std::error_code no_status; !entry->is_symlink(no_status) && entry->is_directory(no_status))
+        out.push_back(entry->path());
     return out;
   };
   for (const fs::path& kind : folders_in(folder)) {

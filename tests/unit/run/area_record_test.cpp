@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "pipeline/georef/crs.h"
 #include "pipeline/georef/tiles.h"
+#include "pipeline/run/area_changes.h"
 
 namespace blockrand::run {
 namespace {
@@ -119,19 +121,93 @@ TEST(AreaReach, WindowsHoldWhatIsNeeded) {
   const geometry::PlanBox tile = projected_box({bounds.west, bounds.south, bounds.east, bounds.north}, projection);
   PlanCells cells(cells_of(tile));
   cells.include(tile);
-  TileReach reach{cells.runs(), cells.runs(), cells.runs()};
+  TileReach reach{cells.runs(), tile, cells.runs(), cells.runs()};
   reach.near.box = reach.far.box = tile;
   reach.far.box.maximum.x += 700;
-  const geometry::PlanBox needed = needed_around(reach, 0);
+  EXPECT_LT(needed_around(reach, 0, false).maximum.y, tile.maximum.y + 300) << "nothing changed that makes blocks";
+  const geometry::PlanBox needed = needed_around(reach, 0, true);
   EXPECT_EQ(needed.minimum.x, tile.minimum.x - kNetworkReach);
   EXPECT_EQ(needed.maximum.x, tile.maximum.x + kNetworkReach);
-  EXPECT_EQ(needed_around(reach, 2000).maximum.y, tile.maximum.y + 2000);
+  EXPECT_EQ(needed_around(reach, 2000, true).maximum.y, tile.maximum.y + 1700) << "beyond its buildings, which lie within";
   const std::array<double, 4> window = window_around(needed, projection);
   EXPECT_TRUE(holds(within_window(window, projection), needed));
   // A window is not much larger than what it is for, and one of a box does not hold more than the box.
   geometry::PlanBox more = needed;
   more.maximum.x += 200;
   EXPECT_FALSE(holds(within_window(window, projection), more));
+}
+
+/// A tile that hears of so many metres around itself.
+TileReach reach_of(const model::TileId& tile, double metres, const georef::Projection& projection) {
+  const georef::GeoBox b = georef::bounds(tile);
+  geometry::PlanBox box = projected_box({b.west, b.south, b.east, b.north}, projection);
+  box.minimum = {box.minimum.x - metres, box.minimum.y - metres};
+  box.maximum = {box.maximum.x + metres, box.maximum.y + metres};
+  PlanCells cells(cells_of(box));
+  cells.include(box);
+  return {cells.runs(), box, cells.runs(), cells.runs()};
+}
+
+importers::osm::ChangedObject changed_at(const model::TileId& tile) {
+  const georef::GeoBox b = georef::bounds(tile);
+  const double lon = (b.west + b.east) / 2, lat = (b.south + b.north) / 2;
+  importers::osm::ChangedObject change;
+  change.box = {lon, lat, lon + 1e-4, lat + 1e-4};
+  change.building = true;
+  return change;
+}
+
+TEST(AreaChanges, PlacesFarFromEachOtherAreReadAlone) {
+  const model::TileId area_tile{11, kWest.x >> 4, kWest.y >> 4};
+  const georef::GeoBox bounds = georef::bounds(area_tile);
+  const georef::Crs crs = georef::open_crs("EPSG:25833", bounds);
+  const georef::Projection projection(crs, bounds);
+  TileChoice area;
+  area.id = area_tile;
+  const georef::GeoBox halo = georef::with_halo(area_tile, kHalo);
+  area.window = {halo.west, halo.south, halo.east, halo.north};
+  const std::uint32_t x = area_tile.x << 4, y = area_tile.y << 4;
+  const model::TileId low{15, x + 1, y + 1}, beside{15, x + 2, y + 1}, high{15, x + 14, y + 14}, between{15, x + 7, y + 7};
+  AreaReach reaches;
+  for (const model::TileId& t : {low, beside, high, between}) reaches[t] = reach_of(t, 100, projection);
+  const auto held = [&](const AreaChanges& c, const model::TileId& tile) {
+    const geometry::PlanBox needed = needed_around(reaches[tile], 0, c.other_network.contains(tile));
+    return std::ranges::count_if(
+        c.parts, [&](const auto& part) { return holds(within_window(part, projection), needed); });
+  };
+
+  std::vector<importers::osm::ChangedObject> changes = {changed_at(low), changed_at(high)};
+  AreaChanges found = concerned_tiles(area, reaches, changes, {}, projection);
+  EXPECT_EQ(found.why_whole, "");
+  EXPECT_TRUE(found.tiles.contains(low) && found.tiles.contains(high) && !found.tiles.contains(between));
+  ASSERT_EQ(found.parts.size(), 2u);
+  for (const model::TileId& t : {low, high}) EXPECT_EQ(held(found, t), 1);
+  EXPECT_EQ(held(found, between), 0);
+  EXPECT_EQ(found.window[0], std::min(found.parts[0][0], found.parts[1][0]));
+  EXPECT_EQ(found.window[3], std::max(found.parts[0][3], found.parts[1][3]));
+
+  changes[1] = changed_at(beside);
+  found = concerned_tiles(area, reaches, changes, {}, projection);
+  EXPECT_EQ(found.parts.size(), 1u);
+  for (const model::TileId& t : {low, beside}) EXPECT_EQ(held(found, t), 1);
+
+  // Of streets more is read: blocks reach further than before.
+  EXPECT_TRUE(found.other_network.empty());
+  const double narrow = found.parts[0][2] - found.parts[0][0];
+  changes[0].network = true;
+  found = concerned_tiles(area, reaches, changes, {}, projection);
+  EXPECT_TRUE(found.other_network.contains(low));
+  EXPECT_GT(found.parts[0][2] - found.parts[0][0], narrow);
+
+  // All over the place: nothing is saved.
+  changes.clear();
+  for (std::uint32_t k = 0; k < 16; k += 3)
+    for (std::uint32_t j = 0; j < 16; j += 3) {
+      const model::TileId t{15, x + k, y + j};
+      reaches[t] = reach_of(t, 900, projection);
+      changes.push_back(changed_at(t));
+    }
+  EXPECT_EQ(concerned_tiles(area, reaches, changes, {}, projection).why_whole, "most of it is concerned");
 }
 
 }  // namespace

@@ -108,6 +108,41 @@ TEST(ExtractStore, WhatIsFarAwayIsNotRead) {
   EXPECT_EQ(found.size(), 2u);
 }
 
+TEST(ExtractStore, OfAWindowThePartsAreRead) {
+  const TempFolder folder;
+  OsmText text;
+  for (int i = 0; i < 9; ++i) text.corners(10 * i + 1, 200 * i, 0, 1);
+  for (int i = 0; i < 9; ++i)
+    text.way(i + 1, {10 * i + 1, 10 * i + 2, 10 * i + 3, 10 * i + 4, 10 * i + 1}, {{"building", "yes"}});
+  text.way(20, {1, 81}, {{"highway", "residential"}});
+  text.way(21, {31, 41}, {{"highway", "residential"}});
+  ASSERT_TRUE(write_store(folder.write("a.osm", text.xml()), folder.path("store")));
+  const ExtractStore store(folder.path("store"));
+  const model::Extract whole = store.read({}, false);
+  ASSERT_EQ(whole.buildings.size(), 9u);
+  const auto around = [&](std::size_t first, std::size_t last) {
+    std::array<double, 4> box{180, 90, -180, -90};
+    for (std::size_t i = first; i <= last; ++i)
+      for (const model::MappedRing& ring : whole.rings_of(whole.buildings[i].rings))
+        for (const model::Location v : whole.vertices_of(ring))
+          box = {std::min(box[0], v.lon * 1e-7), std::min(box[1], v.lat * 1e-7), std::max(box[2], v.lon * 1e-7),
+                 std::max(box[3], v.lat * 1e-7)};
+    return box;
+  };
+  ReadOptions options;
+  options.bbox = around(0, 8);
+  options.parts = {around(0, 1), around(6, 7), around(7, 7)};
+  const model::Extract parts = store.read(options, false);
+  std::vector<std::int64_t> ids, features;
+  for (const model::MappedBuilding& b : parts.buildings) ids.push_back(b.id.number);
+  for (const model::Feature& f : parts.features) features.push_back(f.id.number);
+  EXPECT_EQ(ids, (std::vector<std::int64_t>{1, 2, 7, 8}));
+  EXPECT_EQ(features, (std::vector<std::int64_t>{20})) << "the other street lies between the parts";
+  const std::string by_parts = dump_objects(store.read(options, false));
+  std::swap(options.parts.front(), options.parts.back());
+  EXPECT_EQ(dump_objects(store.read(options, false)), by_parts);
+}
+
 TEST(ExtractStore, WhatLeadsAroundTheGlobeIsInFewAreas) {
   const TempFolder folder;
   OsmText text;
