@@ -188,9 +188,9 @@ void note_tile(WorkCache& cache, const std::string& tile, const TileKey& key, st
   cache.note_parts(tile, parts);
 }
 
-/// Buildings that an area works on at a time at LoD3, where tiles have as many (own choice: two of the largest tiles of a dense city took
-/// 440 MB beside each other); and one with room for two such tiles.
-constexpr std::size_t kMostBuildingsAtATime = 200, kMostWithRoom = 700;
+/// Buildings that an area works on at a time at LoD3: two of the largest tiles of a dense city. One after the other they take half as long
+/// again, and 50 MB less.
+constexpr std::size_t kMostBuildingsAtATime = 700;
 
 /// What working on `todo` would do: nothing is worked on.
 void plan_tiles(std::span<const TileToTell> todo, const TileKeys* keys, WorkCache* cache, int workers,
@@ -486,11 +486,11 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
     done += told_shards[todo[i].place].seeds.size();
     progress.advance_to(done);
   };
-  // In an area, whose memory is bounded, large tiles at LoD3 are worked on one after the other, by all threads.
+  // In an area memory is bounded, whatever the number of jobs.
   base::ItemLoad load;
   if (record.area && options.lod >= 3)
     load = {[&](std::size_t i) { return todo[i].shard ? shards[*todo[i].shard].seeds.size() : 0; },
-            part && part->roomy ? kMostWithRoom : kMostBuildingsAtATime};
+            kMostBuildingsAtATime};
   base::ordered_parallel(todo.size(), workers, in_flight, work, consume, load);
   sums.settle(record);
   warn_of_terrain(inputs, progress);
