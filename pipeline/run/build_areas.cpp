@@ -434,6 +434,7 @@ class AreaBuild {
   /// \param too_small  gets those whose looks found that they must be looked into as a whole
   void build_areas(const std::vector<std::size_t> todo, std::size_t at_once, std::uint64_t& done,
                    std::vector<std::size_t>& too_small) {
+    at_once = std::clamp<std::size_t>(at_once, 1, std::max<std::size_t>(1, todo.size()));
     BuildOptions of_area = named_;
     of_area.force = false;
     of_area.jobs = std::max(1, base::worker_count(options_.jobs) / static_cast<int>(at_once));
