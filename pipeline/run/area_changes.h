@@ -15,12 +15,12 @@
 namespace blockrand::run {
 
 struct AreaChanges {
-  std::set<model::TileId> tiles;   ///< empty, and no reason to look into all: nothing here differs
+  std::set<model::TileId> tiles;  ///< empty, and no reason to look into all: nothing here differs
   /// West, south, east, north in degrees: what must be read to look into them; and around all of it.
   std::vector<std::array<double, 4>> parts;
   std::array<double, 4> window{};
   std::set<model::TileId> other_network;  ///< of the tiles: those near which streets or the like changed
-  std::string why_whole;           ///< not empty: all tiles are to be looked into, and why
+  std::string why_whole;                  ///< not empty: all tiles are to be looked into, and why
 };
 
 /// What district rules ask for beyond a tile.

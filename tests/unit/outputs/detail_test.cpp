@@ -538,8 +538,7 @@ TEST(DetailGlb, PiecesShowEveryElementWhereItStands) {
     constexpr double kWithin = kPieceTolerance + 1e-6;  // m: vertices of pieces have single precision
     auto at = std::lower_bound(corners.begin(), corners.end(), std::array<double, 4>{p.x - kWithin});
     for (; at != corners.end() && (*at)[0] <= p.x + kWithin; ++at)
-      if (std::fabs((*at)[1] - p.y) <= kWithin && std::fabs((*at)[2] - p.z) <= kWithin &&
-          (*at)[3] == feature)
+      if (std::fabs((*at)[1] - p.y) <= kWithin && std::fabs((*at)[2] - p.z) <= kWithin && (*at)[3] == feature)
         return true;
     return false;
   };

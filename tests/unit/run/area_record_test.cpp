@@ -128,7 +128,8 @@ TEST(AreaReach, WindowsHoldWhatIsNeeded) {
   const geometry::PlanBox needed = needed_around(reach, 0, true);
   EXPECT_EQ(needed.minimum.x, tile.minimum.x - kNetworkReach);
   EXPECT_EQ(needed.maximum.x, tile.maximum.x + kNetworkReach);
-  EXPECT_EQ(needed_around(reach, 2000, true).maximum.y, tile.maximum.y + 1700) << "beyond its buildings, which lie within";
+  EXPECT_EQ(needed_around(reach, 2000, true).maximum.y, tile.maximum.y + 1700)
+      << "beyond its buildings, which lie within";
   const std::array<double, 4> window = window_around(needed, projection);
   EXPECT_TRUE(holds(within_window(window, projection), needed));
   // A window is not much larger than what it is for, and one of a box does not hold more than the box.
@@ -167,13 +168,14 @@ TEST(AreaChanges, PlacesFarFromEachOtherAreReadAlone) {
   const georef::GeoBox halo = georef::with_halo(area_tile, kHalo);
   area.window = {halo.west, halo.south, halo.east, halo.north};
   const std::uint32_t x = area_tile.x << 4, y = area_tile.y << 4;
-  const model::TileId low{15, x + 1, y + 1}, beside{15, x + 2, y + 1}, high{15, x + 14, y + 14}, between{15, x + 7, y + 7};
+  const model::TileId low{15, x + 1, y + 1}, beside{15, x + 2, y + 1}, high{15, x + 14, y + 14},
+      between{15, x + 7, y + 7};
   AreaReach reaches;
   for (const model::TileId& t : {low, beside, high, between}) reaches[t] = reach_of(t, 100, projection);
   const auto held = [&](const AreaChanges& c, const model::TileId& tile) {
     const geometry::PlanBox needed = needed_around(reaches[tile], 0, c.other_network.contains(tile));
-    return std::ranges::count_if(
-        c.parts, [&](const auto& part) { return holds(within_window(part, projection), needed); });
+    return std::ranges::count_if(c.parts,
+                                 [&](const auto& part) { return holds(within_window(part, projection), needed); });
   };
 
   std::vector<importers::osm::ChangedObject> changes = {changed_at(low), changed_at(high)};
@@ -204,7 +206,7 @@ TEST(AreaChanges, PlacesFarFromEachOtherAreReadAlone) {
   for (std::uint32_t k = 0; k < 16; k += 3)
     for (std::uint32_t j = 0; j < 16; j += 3) {
       const model::TileId t{15, x + k, y + j};
-      reaches[t] = reach_of(t, 900, projection);
+      reaches[t] = reach_of(t, 2500, projection);
       changes.push_back(changed_at(t));
     }
   EXPECT_EQ(concerned_tiles(area, reaches, changes, {}, projection).why_whole, "most of it is concerned");

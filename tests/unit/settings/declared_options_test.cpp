@@ -37,8 +37,8 @@ TEST(DeclaredOptions, EveryMemberOfABuildIsOne) {
   const std::size_t of_outputs = outputs::output_options().size();
   const std::size_t set_by_the_build = 2;  // whether there are images, and pictures of them
   EXPECT_EQ(of_outputs + set_by_the_build, member_count<outputs::OutputOptions>());
-  const std::size_t of_a_region = 3;       // its earlier build, the settings that had, what changed since
-  const std::size_t of_the_caller = 3;     // whether it only looks ahead, only counts; what people call the input
+  const std::size_t of_a_region = 3;    // its earlier build, the settings that had, what changed since
+  const std::size_t of_the_caller = 3;  // whether it only looks ahead, only counts; what people call the input
   const std::size_t of_imagery = observation::imagery_options().size();
   EXPECT_EQ(of_imagery, member_count<observation::ImageryOptions>());
   EXPECT_EQ(own - of_outputs - of_imagery + 2 + of_a_region + of_the_caller + stages.size(),
