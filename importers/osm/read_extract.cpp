@@ -244,22 +244,25 @@ class ExtractWriter {
   }
 
   /// Which accounts lie in the clip boxes: those with a position by the centre of their own bounding box, those that
-  /// another object stands for with that object.
+  /// another object stands for with that object as well: they are told where they lie, whatever stands for them.
   void decide_clip(const Accounts& accounts, std::vector<bool>& kept) const {
-    const auto centre_inside = [&](const Account& account) {
-      const Box box = box_of(accounts, account);
-      if (box.empty()) return placeless_;
+    const auto holds_centre = [&](const Box& box) {
       // Doubled, so that the centre is exact.
       const std::int64_t x = box.west + box.east, y = box.south + box.north;
       return std::ranges::any_of(clip_, [&](const Box& clip) {
         return x >= 2 * clip.west && x <= 2 * clip.east && y >= 2 * clip.south && y <= 2 * clip.north;
       });
     };
+    const auto centre_inside = [&](const Account& account) {
+      const Box box = box_of(accounts, account);
+      return box.empty() ? placeless_ : holds_centre(box);
+    };
     for (std::size_t i = 0; i < accounts.list.size(); ++i) {
       const Account& account = accounts.list[i];
       const bool follows = account.state == ObjectState::duplicate || account.state == ObjectState::represented;
       const Account* master = follows ? accounts.find(account.related) : nullptr;
-      kept[i] = centre_inside(master != nullptr ? *master : account);
+      const Box own = master != nullptr ? box_of(accounts, account) : Box();
+      kept[i] = centre_inside(master != nullptr ? *master : account) || (!own.empty() && holds_centre(own));
     }
   }
 

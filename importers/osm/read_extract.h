@@ -17,7 +17,7 @@ struct ReadOptions {
   std::function<void(std::string_view phase, double fraction)> progress;
 
   /// Longitude and latitude in degrees: minimum, minimum, maximum, maximum. A building is kept when the centre of its
-  /// raw bounding box lies inside (a duplicate or represented object follows the one that stands for it; one without
+  /// raw bounding box lies inside (a duplicate or represented object also with the one that stands for it; one without
   /// any known position is dropped), a feature when its bounding box touches. Counts of buildings are those kept.
   std::optional<std::array<double, 4>> bbox;
   /// Boxes within `bbox`: what is in none of them is not kept; empty: all of it.

@@ -11,7 +11,7 @@ import sys
 import time
 
 from blockrand_run import SAMPLE, BuildTest, Setup, blockrand, extract, hashes, main, read_json, stray_siblings
-from osm_files import METRE, Node, Way, house, read_xml, ring, town, write_xml
+from osm_files import METRE, Node, Relation, Way, house, read_xml, ring, town, write_xml
 from region_run import LIMITS_OFF, Map, RegionTest
 
 LEVEL = '14'
@@ -435,6 +435,38 @@ class RegionInAreas(RegionTest):
         # All have one time: that of another one may be the newest, or not.
         map_.delete(map_.objects[(1, far)])
         night('the newest object is gone')
+
+    def test_what_stands_for_an_object_may_lie_anywhere(self):
+        """The ways of a multipolygon lie far apart, its middle in neither's tile: a night beside one of them is looked into."""
+        tile = 180 / 2 ** 15  # degrees
+        west, south = (math.floor(13.2 / tile) + 0.5) * tile, math.floor(52.0 / tile) * tile
+
+        def square(number, x, y):
+            corners = [(x + dx * METRE, y + dy * METRE) for dx, dy in ((0, 0), (18, 0), (18, 11), (0, 11))]
+            return ring(500000 + 100 * number, 7000 + number, corners, {'building': 'yes'})
+        # One at the north of its tile, its mate 12 km to the east (no building is as wide: there is no outline) and some tiles to the north; a house that the tile hears of and the
+        # multipolygon does not; others in between.
+        objects = town(200) + square(0, west, south + 0.9 * tile) + square(1, west + 0.175, south + 3.5 * tile)
+        objects += square(2, west, south - 1000 * METRE) + square(3, west + 0.08, south - 20 * tile)
+        map_ = Map(objects)
+        map_.put(Relation(9000, [('way', 7000, 'outer'), ('way', 7001, 'outer')],
+                          {'type': 'multipolygon', 'building': 'yes'}))
+        beside = map_.objects[(1, 7002)]
+        folder = self.region('stands_for', self.SETTINGS.replace(LEVEL, '9'))
+        self.update(folder, map_.write(self.path('stands_for.osm')))
+        at_once = self.build(self.path('stands_for.osm'), 'stands_for_once', '--lod', '1', '--formats', 'gltf')
+        counts = [read_json(self.current(folder), 'areas', a, 'build.json')['counts'] for a in areas(self.current(folder))]
+        for key in ('buildings_in', 'represented', 'reported'):
+            self.assertEqual(sum(c[key] for c in counts), read_json(at_once, 'build.json')['counts'][key], key)
+        for metres in (0.3, 0.6):
+            node = map_.objects[(0, beside.refs[0])]
+            map_.edit(node, lat=node.lat + metres * METRE)
+            self.update(folder, map_.write_changes(self.path('stands_for.osc')))
+            looked = [read_json(self.current(folder), 'areas', a, 'run.json') for a in areas(self.current(folder))]
+            self.assertTrue(any('looked_into' in run for run in looked), 'the whole area was looked into: nothing is tested')
+            clean = self.clean(map_, folder, '--lod', '2', '--areas', '9')
+            first, second = (without_runs(hashes(f)) for f in (self.current(folder), clean))
+            self.assertEqual(sorted(p for p in first.keys() | second.keys() if first.get(p) != second.get(p)), [])
 
     def test_far_areas_stay_as_they_are(self):
         """Two towns 40 km apart: an edit in one touches nothing of the other."""

@@ -358,7 +358,10 @@ TEST(Accounts, TheClipBoxKeepsWhatIsCentredInside) {
       .way(4, {10, 11, 12, 99}, kHouse)                 // reported, centre inside
       .way(5, {98, 99, 98}, kHouse)                     // nowhere
       .way(6, {10, 21}, {{"highway", "residential"}})   // touches
-      .way(7, {21, 22}, {{"highway", "residential"}});  // does not
+      .way(7, {21, 22}, {{"highway", "residential"}})   // does not
+      .square(8, 40, 0, 3, 3, {{"building", "yes"}})    // inside, but for its multipolygon
+      .square(9, 50, 60, 3, 3, {{"building", "yes"}})
+      .relation(1, {"w8 outer", "w9 outer"}, {{"type", "multipolygon"}, {"building", "yes"}});
   ReadOptions options;
   options.bbox = {{13.0, 52.0, 13.0011, 52.0011}};
   const auto e = text.read(options);
@@ -371,7 +374,10 @@ TEST(Accounts, TheClipBoxKeepsWhatIsCentredInside) {
   EXPECT_EQ(state(e, "w5"), "absent");
   EXPECT_NE(feature(e, "w6"), nullptr);
   EXPECT_EQ(feature(e, "w7"), nullptr);
-  EXPECT_EQ(e.counts.buildings(), 4u);
+  EXPECT_EQ(state(e, "r1"), "absent");
+  EXPECT_EQ(state(e, "w8"), "duplicate of r1");
+  EXPECT_EQ(state(e, "w9"), "absent");
+  EXPECT_EQ(e.counts.buildings(), 5u);
 }
 
 }  // namespace
