@@ -346,7 +346,9 @@ PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, s
   return tile;
 }
 
-PackedPictureTile pack_picture(const PictureTile& tile, bool named) {
+PackedPictureTile pack_picture(PictureTile&& tile, bool kept) {
+  const std::uint64_t buildings = tile.buildings.size();
+  if (!kept) return {{}, buildings, {}, std::make_shared<PictureTile>(std::move(tile))};
   base::Packer packer;
   // Room at once: a text that grows has twice the room that it needs.
   std::size_t room = 1000 + tile.buildings.size() * sizeof(PicturedBuilding);
@@ -356,9 +358,8 @@ PackedPictureTile pack_picture(const PictureTile& tile, bool named) {
             scene->blends().size() * sizeof(picture::Scene::Blend);
   packer.bytes.reserve(room);
   packer << tile;
-  PackedPictureTile packed{{}, tile.buildings.size(), std::move(packer.bytes)};
-  if (named) packed.sha256 = base::sha256_of(packed.bytes);
-  return packed;
+  std::string sha256 = base::sha256_of(packer.bytes);
+  return {std::move(sha256), buildings, std::move(packer.bytes), {}};
 }
 
 void Pictures::add(PackedPictureTile&& tile) {
@@ -368,7 +369,7 @@ void Pictures::add(PackedPictureTile&& tile) {
 void Pictures::join() {
   std::vector<PictureTile> tiles;
   for (PackedPictureTile& tile : tiles_) {
-    tiles.push_back(base::unpacked<PictureTile>(tile.bytes));
+    tiles.push_back(tile.as_made ? std::move(*tile.as_made) : base::unpacked<PictureTile>(tile.bytes));
     tile = {};
   }
   tiles_ = {};

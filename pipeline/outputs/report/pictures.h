@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,6 +10,7 @@
 
 #include "pipeline/base/attribution.h"
 #include "pipeline/base/memo.h"
+#include "pipeline/base/pack.h"
 #include "pipeline/footprints/repair_extract.h"
 #include "pipeline/footprints/shard.h"
 #include "pipeline/georef/projection.h"
@@ -55,15 +57,17 @@ struct PictureTile {
   picture::Scene detail;  ///< of buildings at the densest spot: all of LoD3
 };
 
-/// A PictureTile packed, and what names it: pictures that an earlier run took of the same tiles are found without looking into them.
+/// A PictureTile as it is kept: packed, with what names it, so that pictures that an earlier run took of the same tiles are found without
+/// looking into them; or as it was made, where nothing is kept.
 struct PackedPictureTile {
   std::string sha256;  ///< of `bytes`; empty where nobody asks
   std::uint64_t buildings = 0;
   std::string bytes;
+  std::shared_ptr<PictureTile> as_made;  ///< null: packed
 };
 
-/// \param named  whether to say its hash
-PackedPictureTile pack_picture(const PictureTile& tile, bool named);
+/// \param kept  whether it is packed, and says its hash
+PackedPictureTile pack_picture(PictureTile&& tile, bool kept);
 
 /// The bodies of a finished tile, with windows and doors as flat pieces of their walls where it has any; empty for a tile that is not pictured. Pure: safe for different tiles at the same
 /// time.
@@ -99,3 +103,14 @@ class Pictures {
 };
 
 }  // namespace blockrand::outputs
+
+/// Of what is kept: packed.
+template <>
+struct blockrand::base::PackTraits<blockrand::outputs::PackedPictureTile> {
+  static void pack(Packer& out, const outputs::PackedPictureTile& tile) {
+    out << tile.sha256 << tile.buildings << tile.bytes;
+  }
+  static void unpack(Unpacker& in, outputs::PackedPictureTile& tile) {
+    in >> tile.sha256 >> tile.buildings >> tile.bytes;
+  }
+};

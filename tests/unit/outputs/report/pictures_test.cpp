@@ -161,7 +161,7 @@ TEST(Pictures, ShowWindowsAndNearTheSpotEveryElement) {
   const SampleRegion town = test::facade_region();
   PicturePlan plan = all_of(1);
   plan.spot = {391020, 5819020};
-  const PictureTile afar = picture_tile(town.region(), plan, 0);
+  PictureTile afar = picture_tile(town.region(), plan, 0);
   EXPECT_EQ(afar.detail.triangle_count(), 0u);
   plan.near_spot[0] = true;
   const PictureTile tile = picture_tile(town.region(), plan, 0);
@@ -189,7 +189,7 @@ TEST(Pictures, ShowWindowsAndNearTheSpotEveryElement) {
   Pictures with(plan);
   with.add(pack_picture(picture_tile(town.region(), plan, 0), false));
   Pictures without(plan);
-  without.add(pack_picture(afar, false));
+  without.add(pack_picture(std::move(afar), false));
   const auto near = with.take(2), far = without.take(2);
   ASSERT_EQ(near.size(), 3u);
   EXPECT_EQ(near[0].png, far[0].png);
