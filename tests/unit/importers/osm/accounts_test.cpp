@@ -355,11 +355,11 @@ TEST(Accounts, TheClipBoxKeepsWhatIsCentredInside) {
       .square(2, 20, 8, 0, 10, kHouse)                 // centre (13, 5)
       .square(3, 30, 0, 0, 10, {{"building", "yes"}})  // duplicate of w1
       .node(1, 13.0005, 52.0005, kHouse)
-      .way(4, {10, 11, 12, 99}, kHouse)                 // reported, centre inside
-      .way(5, {98, 99, 98}, kHouse)                     // nowhere
-      .way(6, {10, 21}, {{"highway", "residential"}})   // touches
-      .way(7, {21, 22}, {{"highway", "residential"}})   // does not
-      .square(8, 40, 0, 3, 3, {{"building", "yes"}})    // inside, but for its multipolygon
+      .way(4, {10, 11, 12, 99}, kHouse)                // reported, centre inside
+      .way(5, {98, 99, 98}, kHouse)                    // nowhere
+      .way(6, {10, 21}, {{"highway", "residential"}})  // touches
+      .way(7, {21, 22}, {{"highway", "residential"}})  // does not
+      .square(8, 40, 0, 3, 3, {{"building", "yes"}})   // inside, but for its multipolygon
       .square(9, 50, 60, 3, 3, {{"building", "yes"}})
       .relation(1, {"w8 outer", "w9 outer"}, {{"type", "multipolygon"}, {"building", "yes"}});
   ReadOptions options;
