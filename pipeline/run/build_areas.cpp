@@ -29,6 +29,7 @@
 #include "pipeline/run/area_survey.h"
 #include "pipeline/run/build_inputs.h"
 #include "pipeline/run/divide_extract.h"
+#include "pipeline/run/earlier_area.h"
 #include "pipeline/run/estimate.h"
 #include "pipeline/run/output_place.h"
 #include "pipeline/run/region_state.h"
@@ -43,12 +44,12 @@ using importers::osm::ExtractStore;
 using Json = nlohmann::ordered_json;
 using model::TileId;
 
-/// What an area needs, for --memory-limit: an estimate on the safe side. The densest area that was measured (67 MB stored, LoD3, 3D
-/// Tiles, two jobs; docs/internal/RESULTS.md) took 677 MB of the 763 that this gives; with all formats none was measured. Bytes.
+/// What an area needs, for --memory-limit: an estimate on the safe side. Of areas that were measured (LoD3, 3D Tiles, two jobs;
+/// docs/internal/RESULTS.md) one around which 67 MB are stored took 677 MB of the 763 that this gives; with all formats none was. Bytes.
 constexpr std::uint64_t kAreaBase = 160'000'000;
 constexpr double kPerStoredByte = 9;
 
-/// Bytes stored around an area up to which it need not be careful of memory: such areas stay below 400 MB all the same.
+/// Bytes stored around an area up to which it need not be careful of memory (own choice: by the estimate above such areas need less than 400 MB).
 constexpr std::uint64_t kRoomy = 25'000'000;
 
 /// What an area's process sends back beside its files.
@@ -79,41 +80,6 @@ AreaOutcome outcome_of(BuildSummary&& s) {
           false,
           false,
           {}};
-}
-
-/// Whether a line of the outline of the data, or whether there is any, matters within the window.
-void pack_facts(base::Packer& key, const TileChoice& choice, const georef::Projection& projection) {
-  const RegionFacts& facts = choice.facts;
-  key << facts.crs << facts.box << facts.centre << choice.placeless;
-  const auto& [west, south, east, north] = choice.window;
-  const auto unit = [](double degrees) { return static_cast<std::int32_t>(std::lround(degrees * 1e7)); };
-  double low_x = 1e300, low_y = 1e300, high_x = -1e300, high_y = -1e300;
-  for (int i = 0; i <= 8; ++i)
-    for (int j = 0; j <= 8; ++j) {
-      const model::Point2 p = projection.forward(
-          model::Location{unit(west + (east - west) * i / 8), unit(south + (north - south) * j / 8)});
-      low_x = std::min(low_x, p.x), low_y = std::min(low_y, p.y);
-      high_x = std::max(high_x, p.x), high_y = std::max(high_y, p.y);
-    }
-  constexpr double kMargin = 500;  // m: sides of the window are curved in the projection
-  low_x -= kMargin, low_y -= kMargin, high_x += kMargin, high_y += kMargin;
-  for (std::size_t i = 0; i < facts.coverage.size(); ++i) {
-    const model::Point2 a = facts.coverage[i], b = facts.coverage[(i + 1) % facts.coverage.size()];
-    if (std::max(a.x, b.x) < low_x || std::min(a.x, b.x) > high_x || std::max(a.y, b.y) < low_y ||
-        std::min(a.y, b.y) > high_y)
-      continue;
-    key << a << b;
-  }
-  key << facts.coverage.empty();
-  for (const attributes::PinnedArea& area : facts.areas) {
-    std::int32_t x0 = INT32_MAX, y0 = INT32_MAX, x1 = INT32_MIN, y1 = INT32_MIN;
-    for (const auto& ring : area.rings)
-      for (const model::Location l : ring)
-        x0 = std::min(x0, l.lon), y0 = std::min(y0, l.lat), x1 = std::max(x1, l.lon), y1 = std::max(y1, l.lat);
-    // A node has a radius, which its question tells.
-    const bool point = area.rings.size() == 1 && area.rings.front().size() == 1;
-    if (point || (x0 <= unit(east) && x1 >= unit(west) && y0 <= unit(north) && y1 >= unit(south))) key << area;
-  }
 }
 
 class AreaBuild {
@@ -350,7 +316,9 @@ class AreaBuild {
     if (!run.is_object() || (text_in(run, "made_from") != keys_[i] && !unconcerned_.contains(i))) return false;
     std::vector<std::string> paths = {"build.json", "run.json"};
     try {
-      if (!is_whole(i, from, paths)) {
+      if (earlier_record_.is_null()) earlier_record_ = json_of(options_.earlier + "/build.json");
+      const Json& named = earlier_record_.at("areas").at(text_of(parts_[i].choice.id));
+      if (!area_is_whole(from, named.at("build_sha256").get<std::string>(), paths)) {
         progress_.warn(fmt::format("{} is damaged: the area is built anew", from));
         return false;
       }
@@ -379,30 +347,6 @@ class AreaBuild {
     summary_.areas_taken_over.insert(text_of(parts_[i].choice.id));
     ++kept_;
     return true;
-  }
-  /// Whether the area's record is the one that the record of the whole names, and its files are what it lists: by their size, and
-  /// where they were touched after the run that wrote them by their content. \param paths  gets them
-  bool is_whole(std::size_t i, const std::string& from, std::vector<std::string>& paths) {
-    if (earlier_record_.is_null()) earlier_record_ = json_of(options_.earlier + "/build.json");
-    const std::string area = text_of(parts_[i].choice.id);
-    std::error_code error;
-    if (!fs::is_regular_file(from + "/build.json", error) ||
-        base::sha256_file(from + "/build.json") != earlier_record_.at("areas").at(area).at("build_sha256"))
-      return false;
-    const fs::file_time_type written = fs::last_write_time(from + "/run.json", error);
-    const Json record = json_of(from + "/build.json");
-    for (const auto& [path, entry] : record.at("files").items()) {
-      const std::string place = from + "/" + path;
-      if (fs::path(path).lexically_normal() != path || path.starts_with("..") || path.starts_with("/")) return false;
-      if (fs::file_size(place, error) != entry.at("bytes").get<std::uint64_t>() || error) return false;
-      if (fs::last_write_time(place, error) > written && base::sha256_file(place) != entry.at("sha256")) return false;
-      paths.push_back(path);
-    }
-    return true;
-  }
-  static Json json_of(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return file ? Json::parse(file, nullptr, false) : Json();
   }
 
   void build(const ExtractStore& store) {

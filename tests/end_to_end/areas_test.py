@@ -468,6 +468,31 @@ class RegionInAreas(RegionTest):
             first, second = (without_runs(hashes(f)) for f in (self.current(folder), clean))
             self.assertEqual(sorted(p for p in first.keys() | second.keys() if first.get(p) != second.get(p)), [])
 
+    def test_places_far_from_each_other_in_one_area(self):
+        """Two towns and one area, an edit in each on one night: what lies between is not read, and nothing differs."""
+        objects = town(300, 11.0, 51.5)
+        far = 10 ** 9
+        for o in town(300, 11.15, 51.62):
+            if isinstance(o, Node):
+                objects.append(Node(o.id + far, o.lon, o.lat, o.tags))
+            else:
+                objects.append(Way(o.id + far, [r + far for r in o.refs], o.tags))
+        map_ = Map(objects)
+        folder = self.region('places', self.SETTINGS.replace(LEVEL, '9'))
+        self.update(folder, map_.write(self.path('places.osm')))
+        # In the middle: the box around all data is the region's.
+        one, other = (next(w for w in map_.ways('building') if w.id == n) for n in (1150, far + 1150))
+        for metres in (0.4, 0.8):
+            for way in (one, other):
+                node = map_.objects[(0, way.refs[0])]
+                map_.edit(node, lon=node.lon - metres * METRE)
+            self.update(folder, map_.write_changes(self.path('places.osc')))
+            runs = [read_json(self.current(folder), 'areas', a, 'run.json') for a in areas(self.current(folder))]
+            self.assertEqual([run.get('looked_into_all_because') for run in runs], [None])
+            clean = self.clean(map_, folder, '--lod', '2', '--areas', '9')
+            first, second = (without_runs(hashes(f)) for f in (self.current(folder), clean))
+            self.assertEqual(sorted(p for p in first.keys() | second.keys() if first.get(p) != second.get(p)), [])
+
     def test_far_areas_stay_as_they_are(self):
         """Two towns 40 km apart: an edit in one touches nothing of the other."""
         objects = town(400)
