@@ -31,6 +31,13 @@ constexpr std::string_view kRefused = ".refused";
 constexpr std::time_t kStale = 24L * 3600;
 constexpr std::chrono::seconds kTouched{300};
 
+/// Removes a file or folder; what could not be removed is added to `failed`.
+void remove_or_tell(const std::string& path, std::vector<std::string>& failed) {
+  std::error_code error;
+  fs::remove_all(path, error);
+  if (error) failed.push_back(path + ": " + error.message());
+}
+
 /// The number that a name is or begins with, six digits, and what follows; -1: it has none.
 struct Numbered {
   int number = -1;
@@ -236,31 +243,30 @@ std::string RegionFolder::set_aside(int number) const {
   return aside;
 }
 
-std::vector<std::string> RegionFolder::prune(int keep, const std::vector<int>& also) const {
-  std::vector<int> all = passed();
+std::vector<int> RegionFolder::unmark(int keep, const std::vector<int>& also, std::vector<std::string>& failed) const {
+  const std::vector<int> all = passed();
   const std::optional<int> now = current();
   std::size_t kept = all.size();
-  std::vector<std::string> failed;
-  const auto remove = [&](const std::string& path) {
-    std::error_code error;
-    fs::remove_all(path, error);
-    if (error) failed.push_back(path + ": " + error.message());
-  };
+  std::vector<int> unmarked;
   for (const int number : all) {
     if (kept <= static_cast<std::size_t>(keep)) break;
     if (number == now || std::ranges::find(also, number) != also.end()) continue;
-    // Its mark goes first: what a run that is broken off here leaves, the next one removes.
-    for (const std::string& path :
-         {state(number), build(number), data(number), settings_of(number), comparison(number)})
-      remove(path);
+    remove_or_tell(state(number), failed);
+    unmarked.push_back(number);
     --kept;
   }
-  all = passed();
+  return unmarked;
+}
+
+void RegionFolder::remove(const std::vector<int>& unmarked, std::vector<std::string>& failed) const {
+  for (const int number : unmarked)
+    for (const std::string& path : {build(number), data(number), settings_of(number), comparison(number)})
+      remove_or_tell(path, failed);
+  const std::vector<int> all = passed();
   for (const fs::path& entry : entries(path_ + "/log")) {
     const Numbered n = numbered(entry.filename().string());
-    if (n.number >= 0 && !all.empty() && n.number < all.front()) remove(entry.string());
+    if (n.number >= 0 && !all.empty() && n.number < all.front()) remove_or_tell(entry.string(), failed);
   }
-  return failed;
 }
 
 RegionLock::RegionLock(const RegionFolder& region, bool take_over, base::Progress& progress) {

@@ -60,9 +60,12 @@ class RegionFolder {
   /// Sets a build that was refused aside, as `builds/N.refused`; earlier ones make room.
   /// \returns  where it lies \throws base::OutputError
   std::string set_aside(int number) const;
-  /// Removes the oldest builds, with their data, but for `keep`, the current one and those of `also`.
-  /// \returns  what could not be removed
-  std::vector<std::string> prune(int keep, const std::vector<int>& also) const;
+  /// Takes the marks of the oldest builds, so that they are no builds any more, but for `keep`, the current one and those of
+  /// `also`. What is left of them lies there until `remove`, or `remove_unfinished` of the next run.
+  /// \param failed  what could not be removed is added  \returns  their numbers, ascending
+  std::vector<int> unmark(int keep, const std::vector<int>& also, std::vector<std::string>& failed) const;
+  /// Removes builds without a mark, with their data, and logs older than all builds. \param failed  as above
+  void remove(const std::vector<int>& unmarked, std::vector<std::string>& failed) const;
 
  private:
   std::string path_;

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <nlohmann/json.hpp>
 
 #include "importers/osm/apply_changes.h"
@@ -484,14 +485,18 @@ class Updater {
       std::vector<int> also;
       if (current) also.push_back(*current);
       if (options_.region.baseline >= 0) also.push_back(options_.region.baseline);
-      for (const std::string& path : region_.prune(options_.region.keep, also))
-        progress_.warn("could not be removed: " + path);
+      std::vector<std::string> failed;
+      const std::vector<int> old = region_.unmark(options_.region.keep, also, failed);
       std::set<std::string> builds;
       for (const int passed : region_.passed()) builds.insert(RegionFolder::digits(passed));
+      // Old builds and old work are tens of thousands of files each.
+      std::future<void> removed = std::async(std::launch::async, [&] { region_.remove(old, failed); });
       if (cache) {
         kept_work.merge(cache->used());
         keep_work_of(region_.cache(), RegionFolder::digits(number), kept_work, builds);
       }
+      removed.get();
+      for (const std::string& path : failed) progress_.warn("could not be removed: " + path);
     } catch (const std::exception& error) {
       progress_.warn(fmt::format("build {} is published, but: {}", number, error.what()));
     }
