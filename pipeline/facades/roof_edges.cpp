@@ -178,7 +178,7 @@ class RoofDresser {
         for (double by = kFeelOut; by <= most + kFeelOut && by - kFeelOut < room; by += kFeelOut) {
           const Point2 p = before(e, along, by);
           for (const std::size_t i : near)
-            if (geometry::contains(others[i], p)) {
+            if (boxes[i].near({p, p}, 1 / model::kGridStepsPerMetre) && geometry::contains(others[i], p)) {
               room = by - kFeelOut;
               return;
             }

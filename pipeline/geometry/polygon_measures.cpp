@@ -64,15 +64,21 @@ Point2 centroid(std::span<const Point2> ring) {
 }
 
 bool contains(std::span<const Point2> ring, Point2 p) {
+  if (ring.empty()) return false;
   bool inside = false;
   const Grid2 q = to_grid(p);
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Grid2 a = to_grid(ring[i]), b = to_grid(ring[(i + 1) % ring.size()]);
-    if (on_segment(a, b, q)) return true;
-    if ((a.y > q.y) != (b.y > q.y)) {
-      const int side = orientation(a, b, q);
-      if ((b.y > a.y) == (side > 0)) inside = !inside;
+  Grid2 a = to_grid(ring.back());
+  for (const Point2& corner : ring) {
+    const Grid2 b = to_grid(corner);
+    const bool apart = (a.y > q.y && b.y > q.y) || (a.y < q.y && b.y < q.y);  // most edges
+    if (!apart) {
+      if (on_segment(a, b, q)) return true;
+      if ((a.y > q.y) != (b.y > q.y)) {
+        const int side = orientation(a, b, q);
+        if ((b.y > a.y) == (side > 0)) inside = !inside;
+      }
     }
+    a = b;
   }
   return inside;
 }

@@ -143,6 +143,14 @@ base::OptionTable<O> what_files_hold() {
             .record = OptionRecord::yes,
             .record_place = 6},
            &O::gzip),
+      flag({.name = "precompress",
+            .key = "precompress",
+            .help = "tilesets and the GLBs of tiles have a NAME.gz beside them, a third to a half of their size, which "
+                    "a web server sends instead where the browser takes it (nginx: gzip_static on; Caddy: "
+                    "precompressed gzip)",
+            .record = OptionRecord::yes,
+            .record_place = 18},
+           &O::precompress),
       flag({.name = "single-glb",
             .key = "single_glb",
             .help = "also write model.glb: the whole build in one frame",

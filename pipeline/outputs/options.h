@@ -34,6 +34,7 @@ struct OutputOptions {
   bool imagery_pictures = false;                        ///< and they can be shown: imagery.html. Set by the build
   bool evidence = false;                ///< GLB, CityGML and CityJSON also say why each attribute has its value
   bool gzip = false;                    ///< CityGML as .gml.gz, CityJSON as .city.jsonl.gz
+  bool precompress = false;             ///< tileset.json and GLBs of tiles have a .gz beside them
   bool single_glb = false;              ///< also model.glb: the whole build in one frame
   Objects objects = Objects::building;  ///< what model.glb is made of
   bool single_cityjson = false;         ///< also model.city.json: the whole build as one CityJSON object

@@ -43,6 +43,13 @@ std::string tile_name(model::TileId id) { return fmt::format("{}_{}_{}", id.leve
 
 std::string tile_glb_path(model::TileId id) { return fmt::format("tiles/{}/{}/{}.glb", id.level, id.x, id.y); }
 
+void write_served(const std::string& path, const std::string& bytes, const OutputOptions& options,
+                  base::StagedFolder& folder, std::vector<base::PublishedFile>& files) {
+  constexpr int kServedLevel = 9;  // once packed, sent many times
+  files.push_back(folder.write(path, bytes));
+  if (options.precompress) files.push_back(folder.write(path + ".gz", gzip(bytes, kServedLevel)));
+}
+
 base::PublishedFile write_text_file(const std::string& path, const std::string& bytes, const OutputContext& context) {
   return context.options.gzip ? context.folder.write(path + ".gz", gzip(bytes)) : context.folder.write(path, bytes);
 }

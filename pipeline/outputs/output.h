@@ -163,6 +163,10 @@ std::string model_name(model::TileId id);     ///< "Blockrand 15/17600/12900"
 std::string tile_name(model::TileId id);      ///< "15_17600_12900"
 std::string tile_glb_path(model::TileId id);  ///< "tiles/15/17600/12900.glb"
 
+/// Writes a file that web clients fetch, and `<path>.gz` beside it where --precompress asks for it. \param files  are added
+void write_served(const std::string& path, const std::string& bytes, const OutputOptions& options,
+                  base::StagedFolder& folder, std::vector<base::PublishedFile>& files);
+
 /// Writes a city model, compressed as `<path>.gz` where --gzip asks for it.
 base::PublishedFile write_text_file(const std::string& path, const std::string& bytes, const OutputContext& context);
 

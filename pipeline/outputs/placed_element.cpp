@@ -30,6 +30,13 @@ bool has_shape(const model::Element& element) {
   });
 }
 
+std::vector<bool> with_shape(const model::Region& region) {
+  std::vector<bool> out;
+  out.reserve(region.elements.size());
+  for (const model::ColouredElement& e : region.elements) out.push_back(has_shape(*e.element));
+  return out;
+}
+
 PlacedBoxes::PlacedBoxes(const model::Region& region) {
   for (const model::ColouredElement& coloured : region.elements) {
     Box& box = boxes_.emplace_back();

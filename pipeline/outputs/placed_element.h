@@ -11,6 +11,8 @@ namespace blockrand::outputs {
 /// Whether the element has a face to show: one with an area once it is rounded to 0.1 mm. An empty reveal has none;
 /// nothing stands for such an element in any format, and its opening's polygon is left to the solid.
 bool has_shape(const model::Element& element);
+/// The same of all elements of a region, by their numbers: for whoever goes through its placements.
+std::vector<bool> with_shape(const model::Region& region);
 
 /// The boxes of a region's elements, to be asked for those of placements.
 class PlacedBoxes {

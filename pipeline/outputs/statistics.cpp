@@ -39,6 +39,7 @@ constexpr double kWholeEdge = 0.002;
 TileStatistics count_statistics(const model::Region& region) {
   TileStatistics out;
   Statistics& s = out.sums;
+  const std::vector<bool> shown = with_shape(region);
   for (const model::Building& building : region.buildings) {
     const auto& a = building.attributes;
     const double wall_height = std::max(0.0, a.height.value - a.roof_height.value - a.min_height.value);
@@ -73,8 +74,7 @@ TileStatistics count_statistics(const model::Region& region) {
           s.windows += opening.kind == model::OpeningKind::window;
           s.doors += opening.kind == model::OpeningKind::door;
         }
-        for (const model::Placement& p : part.lod3.placements)
-          s.placements += outputs::has_shape(*region.elements.at(p.element).element);
+        for (const model::Placement& p : part.lod3.placements) s.placements += shown.at(p.element);
         s.installations += part.lod3.installations.size() + part.lod3.roof_installations.size();
       }
       ++s.roofs[std::string(model::name(part.built_roof))];

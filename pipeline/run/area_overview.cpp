@@ -304,7 +304,7 @@ void Overview::write(base::StagedFolder& folder, const std::vector<std::string>&
     geopackages = geopackages || e.has_geopackage;
   }
   if (tilesets)
-    for (const auto& [path, text] : s.tilesets()) files.push_back(folder.write(path, text));
+    for (const auto& [path, text] : s.tilesets()) outputs::write_served(path, text, s.options.outputs, folder, files);
   if (geopackages) files.push_back(folder.write("buildings.vrt", s.vrt()));
   files.push_back(folder.write("report.json", s.report_json(unmatched)));
   if (s.options.outputs.report) files.push_back(folder.write("report.html", s.page(s.options.name, unmatched)));

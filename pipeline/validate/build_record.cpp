@@ -83,6 +83,7 @@ class Reader {
       wrong("configuration.citygml_detail", "is not lean or full");
     r_.lean_citygml = r_.lod == 3 && detail == "lean";
     r_.gzip = is_true(member(c, "gzip"));
+    r_.precompress = is_true(member(c, "precompress"));
     r_.single_glb = is_true(member(c, "single_glb"));
     r_.single_cityjson = is_true(member(c, "single_cityjson"));
     r_.report = is_true(member(c, "report"));
@@ -194,6 +195,7 @@ std::vector<std::string> check_file_list(const std::string& folder, const BuildR
                     : "listed, but the configuration does not ask for it");
   };
   agree(record.has("gltf"), record.files.count("tileset.json") > 0, "tileset.json");
+  agree(record.has("gltf") && record.precompress, record.files.count("tileset.json.gz") > 0, "tileset.json.gz");
   agree(record.has("citygml"), any("citygml/", record.gzip ? ".gml.gz" : ".gml"), "citygml/");
   agree(record.has("cityjson"), any("cityjson/", record.gzip ? ".city.jsonl.gz" : ".city.jsonl"), "cityjson/");
   agree(record.has("gpkg"), record.files.count("buildings.gpkg") > 0, "buildings.gpkg");

@@ -29,7 +29,7 @@ struct BuildRecord {
   bool single_baked = false;                   ///< the same, in model.glb
   bool people = false;                         ///< property tables have the attribute profile `people`
   bool lean_citygml = false;                   ///< CityGML of LoD3 has flat openings, ornaments without small pieces
-  bool gzip = false, single_glb = false, single_cityjson = false, report = false, explain = false;
+  bool gzip = false, precompress = false, single_glb = false, single_cityjson = false, report = false, explain = false;
   std::string crs, pipeline, vertical_crs, height_reference;
   std::string
       raised_from;  ///< vertical CRS from which heights were raised to the ellipsoid in 3D Tiles; empty: none, or unknown

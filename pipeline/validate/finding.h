@@ -12,6 +12,7 @@ namespace blockrand::validate {
 #define BLOCKRAND_CHECKS(X)                                                                                     \
   X(file_missing, "FILE_MISSING", "a file that build.json lists is not there")                                  \
   X(file_unlisted, "FILE_UNLISTED", "a file that build.json does not list lies in the build")                   \
+  X(gzip_differs, "GZIP_DIFFERS", "a .gz beside a file does not hold that file")                                \
   X(file_changed, "FILE_CHANGED", "size or SHA-256 differ from build.json")                                     \
   X(file_unreadable, "FILE_UNREADABLE", "the file cannot be parsed")                                            \
   X(build_json, "BUILD_JSON", "build.json lacks a field, or a field contradicts another")                       \

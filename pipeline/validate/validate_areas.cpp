@@ -14,6 +14,7 @@
 #include "pipeline/base/sha256.h"
 #include "pipeline/base/side_files.h"
 #include "pipeline/base/text.h"
+#include "pipeline/validate/packed_files.h"
 
 namespace blockrand::validate {
 namespace {
@@ -176,6 +177,9 @@ class AreasRun {
           base::sha256_file(full(path)) != entry.value("sha256", ""))
         log().add(Check::file_changed, path, "", "its size or SHA-256 differs from build.json");
     }
+    std::vector<std::string> names;
+    for (const auto& [path, entry] : files.items()) names.push_back(path);
+    check_packed_beside(options_.folder, names, log());
     std::error_code error;
     for (fs::recursive_directory_iterator at(options_.folder, error), end; !error && at != end; at.increment(error)) {
       const std::string path = at->path().lexically_relative(options_.folder).generic_string();

@@ -19,6 +19,7 @@
 #include "pipeline/validate/bytes_of_file.h"
 #include "pipeline/validate/cityjson_reader.h"
 #include "pipeline/validate/formats.h"
+#include "pipeline/validate/packed_files.h"
 #include "pipeline/validate/qgis_project.h"
 #include "pipeline/validate/report_check.h"
 #include "pipeline/validate/tile_check.h"
@@ -45,6 +46,7 @@ class Run {
     open();
     checked("files", "listed, there, unchanged (size and SHA-256)",
             check_hashes(o_.folder, record_, workers_, progress_, log()), "files");
+    check_packed_files();
     read_whole_files();
     choose_positions();
     check_tiles();
@@ -90,6 +92,13 @@ class Run {
   }
 
   // ---- files
+
+  void check_packed_files() {
+    std::vector<std::string> files;
+    for (const auto& [path, file] : record_.files) files.push_back(path);
+    if (const std::uint64_t count = check_packed_beside(o_.folder, files, log()))
+      checked("packed files", "hold what they stand beside", count, "files");
+  }
 
   void read_whole_files() {
     if (record_.has("gltf") && record_.files.count("tileset.json")) {

@@ -73,7 +73,7 @@ class Areas(BuildTest):
         self.assertEqual(sorted(p for p in first.keys() | second.keys() if first.get(p) != second.get(p)), [])
 
     def test_the_tiles_are_those_of_a_build_at_once(self):
-        for source, options in ((SAMPLE, ('--lod', '3')), (self.town, ('--lod', '2', '--gzip')), (SAMPLE, ('--compress', 'none', '--lod', '1'))):
+        for source, options in ((SAMPLE, ('--lod', '3', '--precompress')), (self.town, ('--lod', '2', '--gzip')), (SAMPLE, ('--compress', 'none', '--lod', '1'))):
             with self.subTest(options):
                 at_once = self.build(source, 'once', *options, '--force', '--allow-shrink', '100')
                 divided = self.build(source, 'divided', *options, '--areas', LEVEL, '--force', '--allow-shrink', '100')

@@ -1,4 +1,5 @@
 """What each option of `build` changes, `info`, help and version: on the sample, validated like any build."""
+import gzip
 import json
 import os
 
@@ -70,6 +71,29 @@ class Options(BuildTest):
         with open(os.path.join(out, files_of(out, '.gml.gz')[0]), 'rb') as f:
             head = f.read(10)
         self.assertEqual(head[4:8], b'\0\0\0\0', 'gzip would carry the time of the clock')
+
+    def test_precompress(self):
+        out = self.build(SAMPLE, 'served', '--lod', '3', '--formats', 'gltf', '--precompress')
+        self.valid(out)
+        served = [f for f in files_of(out) if f == 'tileset.json' or f.endswith('.glb')]
+        self.assertGreater(len(served), 3)
+        self.assertEqual(sorted(f + '.gz' for f in served), sorted(f for f in files_of(out, '.gz') if not f.startswith('explain/')))
+        sizes = [0, 0]
+        for name in served:
+            with open(os.path.join(out, name), 'rb') as f:
+                plain = f.read()
+            with open(os.path.join(out, name + '.gz'), 'rb') as f:
+                packed = f.read()
+            self.assertEqual(gzip.decompress(packed), plain, name)
+            sizes = [sizes[0] + len(plain), sizes[1] + len(packed)]
+        self.assertLess(sizes[1], sizes[0] / 2)
+        # What the .gz holds is checked, and that it is there.
+        blob = next(f for f in served if f.endswith('.glb')) + '.gz'
+        with open(os.path.join(out, blob), 'wb') as f:
+            f.write(gzip.compress(b'another file'))
+        run = blockrand('validate', out, '--progress', 'none')
+        self.assertEqual(run.code, 2, run)
+        self.assertIn('GZIP_DIFFERS', run.out)
 
     def test_single_glb(self):
         out = self.build(SAMPLE, 'single', '--single-glb')

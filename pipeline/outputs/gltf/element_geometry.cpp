@@ -138,12 +138,13 @@ std::vector<InstanceGroup> element_instances(const model::Region& region, const 
   std::vector<Point3> source;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> element_and_feature;
   std::uint32_t feature = 0;
+  const std::vector<bool> shown = with_shape(region);
   for (const model::Building& building : region.buildings) {
     if (!building.owned) continue;
     for (const model::BuildingPart& part : building.parts) {
       if (part.lod >= 3)
         for (const model::Placement& p : part.lod3.placements) {
-          if (!has_shape(*region.elements.at(p.element).element)) continue;
+          if (!shown.at(p.element)) continue;
           source.push_back(p.origin);
           source.push_back({p.origin.x + p.along.x, p.origin.y + p.along.y, p.origin.z});
           element_and_feature.emplace_back(p.element, feature);

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "pipeline/model/region.h"
@@ -39,7 +41,7 @@ struct Piece {
 /// Vertices and indices of pieces, in large blocks that stay where they are.
 class PieceStore {
  public:
-  /// Room for `count` more in one stretch.
+  /// Room for `count` more in one stretch; what stands there is not said.
   std::span<Piece::Vertex> add_vertices(std::size_t count) { return vertices_.add(count); }
   std::span<std::uint16_t> add_indices(std::size_t count) { return indices_.add(count); }
 
@@ -48,19 +50,25 @@ class PieceStore {
   class Blocks {
    public:
     std::span<T> add(std::size_t count) {
-      if (blocks_.empty() || count > blocks_.back().capacity() - blocks_.back().size()) {
-        blocks_.emplace_back();
-        blocks_.back().reserve(std::max(count, kBlock));
+      if (count > room_) {
+        room_ = std::max(count, kBlock);
+        // Not written to before its owner does: clearing it was a tenth of making GLBs.
+        blocks_.push_back(std::make_unique_for_overwrite<std::byte[]>(room_ * sizeof(T)));
+        next_ = reinterpret_cast<T*>(blocks_.back().get());
       }
-      std::vector<T>& block = blocks_.back();
-      const std::size_t first = block.size();
-      block.resize(first + count);
-      return std::span(block).subspan(first);
+      const std::span<T> out(next_, count);
+      next_ += count;
+      room_ -= count;
+      return out;
     }
 
    private:
+    static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+    static_assert(alignof(T) <= __STDCPP_DEFAULT_NEW_ALIGNMENT__);
     static constexpr std::size_t kBlock = std::size_t{1} << 15;
-    std::vector<std::vector<T>> blocks_;  // a block is never longer than what it was given at first
+    std::vector<std::unique_ptr<std::byte[]>> blocks_;
+    T* next_ = nullptr;  // in the last block
+    std::size_t room_ = 0;
   };
   Blocks<Piece::Vertex> vertices_;
   Blocks<std::uint16_t> indices_;

@@ -74,13 +74,13 @@ GlbOptions glb_options(const OutputContext& context, const georef::EnuFrame& fra
 
 /// What viewers show from farther away than facades: blocks, then roofs (tileset.h says from how far).
 void write_coarser_levels(const model::Region& region, GlbOptions options, const std::string& place, TileEntry& entry,
-                          base::StagedFolder& folder, std::vector<base::PublishedFile>& files) {
+                          const OutputContext& context, std::vector<base::PublishedFile>& files) {
   for (const auto& [lod, error] : {std::pair(1, kBlockError), std::pair(2, kRoofError)}) {
     options.lod = lod;
     const Glb glb = write_glb(region, options);
     if (glb.triangles == 0) continue;
     entry.coarser.push_back({fmt::format("{}_lod{}.glb", place, lod), error});
-    files.push_back(folder.write(entry.coarser.back().uri, glb.bytes));
+    write_served(entry.coarser.back().uri, glb.bytes, context.options, context.folder, files);
     entry.min = {std::min(entry.min.x, glb.min.x), std::min(entry.min.y, glb.min.y), std::min(entry.min.z, glb.min.z)};
     entry.max = {std::max(entry.max.x, glb.max.x), std::max(entry.max.y, glb.max.y), std::max(entry.max.z, glb.max.z)};
   }
@@ -147,8 +147,8 @@ std::array<std::vector<std::size_t>, 4> quarters_of(const model::Region& region,
 class PieceWriter {
  public:
   PieceWriter(FinishedTile& tile, const GlbOptions& options, std::string place, std::size_t most, TileEntry& entry,
-              base::StagedFolder& folder)
-      : tile_(tile), options_(options), place_(std::move(place)), most_(most), entry_(entry), folder_(folder) {}
+              const OutputContext& context)
+      : tile_(tile), options_(options), place_(std::move(place)), most_(most), entry_(entry), context_(context) {}
 
   void write() {
     std::vector<std::size_t> all(tile_.region.buildings.size());
@@ -180,7 +180,7 @@ class PieceWriter {
                         (entry_.min.z + entry_.max.z) / 2};
     const bool shown = glb.triangles > 0;
     entry_.pieces.push_back({place_ + name + ".glb", shown ? glb.min : middle, shown ? glb.max : middle});
-    tile_.files.push_back(folder_.write(entry_.pieces.back().uri, glb.bytes));
+    write_served(entry_.pieces.back().uri, glb.bytes, context_.options, context_.folder, tile_.files);
   }
 
   FinishedTile& tile_;
@@ -188,7 +188,7 @@ class PieceWriter {
   std::string place_;
   std::size_t most_;
   TileEntry& entry_;
-  base::StagedFolder& folder_;
+  const OutputContext& context_;
 };
 
 /// Writes a tile's GLBs. \returns its entry in the tileset; none where its GLB would show nothing
@@ -214,13 +214,13 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
   const auto most = static_cast<std::size_t>(context.options.max_glb_bytes);
   if (most > 0 && glb.bytes.size() > most) {
     std::string().swap(glb.bytes);  // room for the pieces
-    PieceWriter(tile, options, place, most, entry, context.folder).write();
+    PieceWriter(tile, options, place, most, entry, context).write();
     entry.uri.clear();
   } else {
-    tile.files.push_back(context.folder.write(entry.uri, glb.bytes));
+    write_served(entry.uri, glb.bytes, context.options, context.folder, tile.files);
   }
   entry.enu_to_ecef = options.frame.enu_to_ecef;
-  if (context.lod >= 3) write_coarser_levels(region, options, place, entry, context.folder, tile.files);
+  if (context.lod >= 3) write_coarser_levels(region, options, place, entry, context, tile.files);
   set_bounds(entry, frame.frame());
   return entry;
 }
@@ -285,7 +285,7 @@ class GltfOutput : public OutputOf<std::optional<TileEntry>> {
       options.height_reference = context_.heights.words;
       options.generator = generator();
       options.attribution = attribution(context_);
-      build.files.push_back(context_.folder.write("tileset.json", write_tileset(tiles_, options)));
+      write_served("tileset.json", write_tileset(tiles_, options), context_.options, context_.folder, build.files);
     }
     if (context_.options.single_glb) write_model(build, context_);
   }

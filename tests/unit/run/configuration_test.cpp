@@ -72,7 +72,8 @@ TEST(Configuration, KeepsItsOrder) {
   options.tile = "15/35207/25941";
   EXPECT_EQ(keys_of(configuration(options)),
             "lod formats report explain evidence gzip instancing compress single_glb single_cityjson seed tile bbox "
-            "objects citygml_detail attributes max_glb_bytes districts overrides terrain terrain_height_reference "
+            "objects citygml_detail attributes max_glb_bytes precompress districts overrides terrain "
+            "terrain_height_reference "
             "ground_height repair generate "
             "\nrepair: duplicate_distance spike_width min_piece_area ring_clearance parts_free_area parts_free_width "
             "simplify collinear_distance share_walls square fit_parts arcs settle_coverings resolve_overlaps "
