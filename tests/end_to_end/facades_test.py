@@ -176,8 +176,8 @@ class Facades(BuildTest):
         self.assertEqual(validators.metadata(out), '')
         for name in files_of(out, '.glb'):
             if '_lod' not in name:
-                for level in ('_lod1', '_lod2'):
-                    self.assertTrue(os.path.exists(os.path.join(out, name.replace('.glb', f'{level}.glb'))))
+                self.assertTrue(os.path.exists(os.path.join(out, name.replace('.glb', '_lod2.glb'))))
+        self.assertEqual([f for f in files_of(out, '.glb') if '_lod1' in f], [])
 
     def test_compressed_files_are_small(self):
         def size(out):
@@ -260,7 +260,7 @@ class DamagedFacades(BuildTest):
         def change(document):
             def walk(tile):
                 for child in tile.get('children', []):
-                    if child.get('content', {}).get('uri', '').endswith('_lod2.glb'):
+                    if tile.get('content', {}).get('uri', '').endswith('_lod2.glb'):
                         child['geometricError'] = tile['geometricError']
                     walk(child)
             walk(document['root'])

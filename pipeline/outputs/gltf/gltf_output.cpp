@@ -72,18 +72,16 @@ GlbOptions glb_options(const OutputContext& context, const georef::EnuFrame& fra
   return o;
 }
 
-/// What viewers show from farther away than facades: blocks, then roofs (tileset.h says from how far).
-void write_coarser_levels(const model::Region& region, GlbOptions options, const std::string& place, TileEntry& entry,
-                          const OutputContext& context, std::vector<base::PublishedFile>& files) {
-  for (const auto& [lod, error] : {std::pair(1, kBlockError), std::pair(2, kRoofError)}) {
-    options.lod = lod;
-    const Glb glb = write_glb(region, options);
-    if (glb.triangles == 0) continue;
-    entry.coarser.push_back({fmt::format("{}_lod{}.glb", place, lod), error});
-    write_served(entry.coarser.back().uri, glb.bytes, context.options, context.folder, files);
-    entry.min = {std::min(entry.min.x, glb.min.x), std::min(entry.min.y, glb.min.y), std::min(entry.min.z, glb.min.z)};
-    entry.max = {std::max(entry.max.x, glb.max.x), std::max(entry.max.y, glb.max.y), std::max(entry.max.z, glb.max.z)};
-  }
+/// What viewers show from farther away than facades: roofs (tileset.h says from how far).
+void write_coarser_level(const model::Region& region, GlbOptions options, const std::string& place, TileEntry& entry,
+                         const OutputContext& context, std::vector<base::PublishedFile>& files) {
+  options.lod = 2;
+  const Glb glb = write_glb(region, options);
+  if (glb.triangles == 0) return;
+  entry.coarser.push_back({fmt::format("{}_lod{}.glb", place, options.lod), kRoofError});
+  write_served(entry.coarser.back().uri, glb.bytes, context.options, context.folder, files);
+  entry.min = {std::min(entry.min.x, glb.min.x), std::min(entry.min.y, glb.min.y), std::min(entry.min.z, glb.min.z)};
+  entry.max = {std::max(entry.max.x, glb.max.x), std::max(entry.max.y, glb.max.y), std::max(entry.max.z, glb.max.z)};
 }
 
 /// Geodetic bounds of a box in a local frame, from its corners and the middle of its underside, which lies deepest.
@@ -220,7 +218,7 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
     write_served(entry.uri, glb.bytes, context.options, context.folder, tile.files);
   }
   entry.enu_to_ecef = options.frame.enu_to_ecef;
-  if (context.lod >= 3) write_coarser_levels(region, options, place, entry, context, tile.files);
+  if (context.lod >= 3) write_coarser_level(region, options, place, entry, context, tile.files);
   set_bounds(entry, frame.frame());
   return entry;
 }

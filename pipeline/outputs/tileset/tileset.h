@@ -11,9 +11,10 @@
 namespace blockrand::outputs {
 
 /// m. What a level lacks, as viewers measure it: with the usual 16 pixels of tolerance, 1080 lines and a field of view
-/// of 60 degrees they go on to the next finer level within 58 times this distance. Blocks lack roofs; within 1.2 km a
-/// roof of 5 m is 4 pixels high. LoD2 lacks facades; within 350 m a storey of 3 m with its windows is 8 pixels high.
-inline constexpr double kBlockError = 20, kRoofError = 6;
+/// of 60 degrees they go on to the next finer level within 58 times this distance. LoD2 lacks facades; within 350 m a
+/// storey of 3 m with its windows is 8 pixels high. Blocks without roofs are no level of their own: their files have 95 % of
+/// the bytes of those with roofs.
+inline constexpr double kRoofError = 6;
 
 /// The same buildings in less detail.
 struct CoarserLevel {

@@ -59,7 +59,7 @@ struct Walk {
 
 TEST(Tileset, CoarserLevelsAreReplacedByFinerOnes) {
   TileEntry t = tile(17604, 12942);
-  t.coarser = {{"tiles/15/17604/12942_lod1.glb", kBlockError}, {"tiles/15/17604/12942_lod2.glb", kRoofError}};
+  t.coarser = {{"tiles/15/17604/12942_lod1.glb", 3 * kRoofError}, {"tiles/15/17604/12942_lod2.glb", kRoofError}};
   const json document = json::parse(write_tileset(std::vector{t, tile(17605, 12942)}, {}));
   const json* level = nullptr;
   for (const json& child : document["root"]["children"])
@@ -91,13 +91,13 @@ TEST(Tileset, PiecesAreChildrenOfTheirTile) {
     TileEntry t = tile(17604, 12942);
     t.uri.clear();
     t.pieces = {{"a_q0.glb", {-200, -150, 0}, {0, 0, 20}}, {"a_q31.glb", {0, 0, 0}, {210, 160, 25.5}}};
-    if (coarser) t.coarser = {{"a_lod1.glb", kBlockError}, {"a_lod2.glb", kRoofError}};
+    if (coarser) t.coarser = {{"a_lod1.glb", 3 * kRoofError}, {"a_lod2.glb", kRoofError}};
     const json document = json::parse(write_tileset(std::vector{t}, {}));
     const json* node = &document["root"]["children"][0];
     EXPECT_TRUE(node->contains("transform"));
     EXPECT_EQ(node->contains("content"), coarser);
     EXPECT_EQ(node->contains("refine"), coarser);
-    EXPECT_EQ((*node)["geometricError"], coarser ? kBlockError : 100) << "without content: refined as its parent is";
+    EXPECT_EQ((*node)["geometricError"], coarser ? 3 * kRoofError : 100) << "without content: refined as its parent is";
     if (coarser) node = &(*node)["children"][0];
     ASSERT_EQ((*node)["children"].size(), 2u);
     for (std::size_t i = 0; i < 2; ++i) {
