@@ -61,6 +61,115 @@ bool is_convex(std::span<const Point2> points, const std::vector<std::uint32_t>&
   return turned == 1;
 }
 
+using Loops = std::span<const std::vector<std::uint32_t>>;
+using Faces = std::vector<std::vector<std::uint32_t>>;
+
+/// Steps of kFineSteps within which two coordinates are one: what rounding leaves, 4 thousandths of a millimetre.
+constexpr std::int64_t kSameSteps = 4;
+/// Between two ranks, so that the triangulation has whole numbers to compare.
+constexpr std::int64_t kRankSteps = 1024;
+/// Loops with more corners, and with edges that are not parallel to an axis, are cut as they are: every two edges would be compared.
+constexpr std::size_t kMostCorners = 96;
+
+/// The corners of the loops where their coordinates are counted instead of measured: equal layouts of other sizes become equal.
+std::vector<geometry::Grid2> ranked(std::span<const geometry::Grid2> grid, Loops loops) {
+  std::vector<geometry::Grid2> out(grid.begin(), grid.end());
+  std::vector<std::pair<std::int64_t, std::uint32_t>> order;
+  for (std::int64_t geometry::Grid2::*axis : {&geometry::Grid2::x, &geometry::Grid2::y}) {
+    order.clear();
+    for (const std::vector<std::uint32_t>& loop : loops)
+      for (const std::uint32_t i : loop) order.emplace_back(grid[i].*axis, i);
+    std::sort(order.begin(), order.end());
+    std::int64_t rank = 0;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      if (k > 0 && order[k].first - order[k - 1].first > kSameSteps) rank += kRankSteps;
+      out[order[k].second].*axis = rank;
+    }
+  }
+  return out;
+}
+
+/// No two edges of the loops meet but at the corner that they share. Edges along the axes need not be asked: ranks keep their order.
+bool keeps_apart(std::span<const geometry::Grid2> ranks, std::span<const Point2> points, Loops loops) {
+  struct Edge {
+    std::uint32_t from, to;
+    bool along_axis;
+  };
+  std::vector<Edge> edges;
+  bool all_along = true;
+  for (const std::vector<std::uint32_t>& loop : loops)
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const std::uint32_t a = loop[k], b = loop[(k + 1) % loop.size()];
+      edges.push_back({a, b, ranks[a].x == ranks[b].x || ranks[a].y == ranks[b].y});
+      all_along = all_along && edges.back().along_axis;
+    }
+  if (all_along) return true;
+  if (edges.size() > kMostCorners) return false;
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    for (std::size_t k = i + 1; k < edges.size(); ++k) {
+      const Edge &a = edges[i], &b = edges[k];
+      if ((a.along_axis && b.along_axis) || a.from == b.to || a.to == b.from) continue;
+      if (segments_meet(points[a.from], points[a.to], points[b.from], points[b.to])) return false;
+    }
+  return true;
+}
+
+/// Triangles of the loops, put together to convex faces.
+std::optional<Faces> merged_faces(std::span<const Point2> points, std::span<const geometry::Grid2> grid, Loops loops) {
+  const auto turns_left = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    const double scale = distance(points[a], points[b]) * distance(points[b], points[c]);
+    return cross(points[a], points[b], points[c]) > kStraight * scale;
+  };
+  const auto triangles = geometry::triangulate(grid, loops);
+  if (!triangles) return std::nullopt;
+
+  // Two faces become one wherever their common edge can go and both of its ends stay strictly convex.
+  Faces faces;
+  struct Side {
+    std::uint32_t from, to, face;
+  };
+  std::vector<Side> sides;
+  for (std::uint32_t f = 0; f < triangles->size(); ++f) {
+    const auto& t = (*triangles)[f];
+    faces.push_back({t[0], t[1], t[2]});
+    for (std::size_t k = 0; k < 3; ++k) sides.push_back({t[k], t[(k + 1) % 3], f});
+  }
+  std::vector<std::uint32_t> merged_into(faces.size());
+  for (std::uint32_t f = 0; f < faces.size(); ++f) merged_into[f] = f;
+  const auto now = [&](std::uint32_t f) {
+    while (merged_into[f] != f) f = merged_into[f] = merged_into[merged_into[f]];
+    return f;
+  };
+  std::vector<Side> ordered = sides;
+  std::sort(ordered.begin(), ordered.end(),
+            [](const Side& a, const Side& b) { return std::pair(a.from, a.to) < std::pair(b.from, b.to); });
+  for (const Side& s : sides) {
+    if (s.from > s.to) continue;
+    const auto other = std::lower_bound(ordered.begin(), ordered.end(), s, [](const Side& a, const Side& b) {
+      return std::pair(a.from, a.to) < std::pair(b.to, b.from);
+    });
+    if (other == ordered.end() || other->from != s.to || other->to != s.from) continue;
+    const std::uint32_t one = now(s.face), two = now(other->face);
+    if (one == two) continue;
+    const auto &f = faces[one], &g = faces[two];
+    // f from `to` round to `from`, then g's corners between them.
+    const auto at = static_cast<std::size_t>(std::find(f.begin(), f.end(), s.to) - f.begin());
+    const auto in = static_cast<std::size_t>(std::find(g.begin(), g.end(), s.from) - g.begin());
+    std::vector<std::uint32_t> both;
+    both.reserve(f.size() + g.size() - 2);
+    for (std::size_t k = 0; k < f.size(); ++k) both.push_back(f[(at + k) % f.size()]);
+    for (std::size_t k = 1; k + 1 < g.size(); ++k) both.push_back(g[(in + k) % g.size()]);
+    const std::size_t n = both.size(), end = f.size() - 1;
+    if (!turns_left(both[n - 1], both[0], both[1])) continue;
+    if (!turns_left(both[end - 1], both[end], both[(end + 1) % n])) continue;
+    faces[one] = std::move(both);
+    faces[two].clear();
+    merged_into[two] = one;
+  }
+  std::erase_if(faces, [](const auto& f) { return f.empty(); });
+  return faces;
+}
+
 }  // namespace
 
 double signed_area(std::span<const Point2> polygon) {
@@ -132,63 +241,22 @@ Outline inset(const Outline& convex, double by) {
 
 std::optional<std::vector<std::vector<std::uint32_t>>> convex_faces(std::span<const Point2> points,
                                                                     std::span<const std::vector<std::uint32_t>> loops) {
-  const auto turns_left = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    const double scale = distance(points[a], points[b]) * distance(points[b], points[c]);
-    return cross(points[a], points[b], points[c]) > kStraight * scale;
-  };
-  if (loops.size() == 1 && is_convex(points, loops[0])) return std::vector<std::vector<std::uint32_t>>{loops[0]};
+  if (loops.size() == 1 && is_convex(points, loops[0])) return Faces{loops[0]};
   std::vector<geometry::Grid2> grid;
   grid.reserve(points.size());
   for (const Point2 p : points)
     grid.push_back({geometry::to_steps(p.x * kFineSteps), geometry::to_steps(p.y * kFineSteps)});
-  const auto triangles = geometry::triangulate(grid, loops);
-  if (!triangles) return std::nullopt;
-
-  // Two faces become one wherever their common edge can go and both of its ends stay strictly convex.
-  std::vector<std::vector<std::uint32_t>> faces;
-  struct Side {
-    std::uint32_t from, to, face;
-  };
-  std::vector<Side> sides;
-  for (std::uint32_t f = 0; f < triangles->size(); ++f) {
-    const auto& t = (*triangles)[f];
-    faces.push_back({t[0], t[1], t[2]});
-    for (std::size_t k = 0; k < 3; ++k) sides.push_back({t[k], t[(k + 1) % 3], f});
-  }
-  std::vector<std::uint32_t> merged_into(faces.size());
-  for (std::uint32_t f = 0; f < faces.size(); ++f) merged_into[f] = f;
-  const auto now = [&](std::uint32_t f) {
-    while (merged_into[f] != f) f = merged_into[f] = merged_into[merged_into[f]];
-    return f;
-  };
-  std::vector<Side> ordered = sides;
-  std::sort(ordered.begin(), ordered.end(),
-            [](const Side& a, const Side& b) { return std::pair(a.from, a.to) < std::pair(b.from, b.to); });
-  for (const Side& s : sides) {
-    if (s.from > s.to) continue;
-    const auto other = std::lower_bound(ordered.begin(), ordered.end(), s, [](const Side& a, const Side& b) {
-      return std::pair(a.from, a.to) < std::pair(b.to, b.from);
-    });
-    if (other == ordered.end() || other->from != s.to || other->to != s.from) continue;
-    const std::uint32_t one = now(s.face), two = now(other->face);
-    if (one == two) continue;
-    const auto &f = faces[one], &g = faces[two];
-    // f from `to` round to `from`, then g's corners between them.
-    const auto at = static_cast<std::size_t>(std::find(f.begin(), f.end(), s.to) - f.begin());
-    const auto in = static_cast<std::size_t>(std::find(g.begin(), g.end(), s.from) - g.begin());
-    std::vector<std::uint32_t> both;
-    both.reserve(f.size() + g.size() - 2);
-    for (std::size_t k = 0; k < f.size(); ++k) both.push_back(f[(at + k) % f.size()]);
-    for (std::size_t k = 1; k + 1 < g.size(); ++k) both.push_back(g[(in + k) % g.size()]);
-    const std::size_t n = both.size(), end = f.size() - 1;
-    if (!turns_left(both[n - 1], both[0], both[1])) continue;
-    if (!turns_left(both[end - 1], both[end], both[(end + 1) % n])) continue;
-    faces[one] = std::move(both);
-    faces[two].clear();
-    merged_into[two] = one;
-  }
-  std::erase_if(faces, [](const auto& f) { return f.empty(); });
-  return faces;
+  // Frames of one layout are cut alike whatever their size, so that a GLB needs one shape for them. Where all faces turn left and the
+  // edges keep apart, the faces cover the polygon once: their border does.
+  const std::vector<geometry::Grid2> ranks = ranked(grid, loops);
+  std::vector<Point2> counted;
+  counted.reserve(points.size());
+  for (const geometry::Grid2& r : ranks) counted.push_back({static_cast<double>(r.x), static_cast<double>(r.y)});
+  if (std::optional<Faces> faces = merged_faces(counted, ranks, loops);
+      faces && std::ranges::all_of(*faces, [&](const auto& face) { return is_convex(points, face); }) &&
+      keeps_apart(ranks, points, loops))
+    return faces;
+  return merged_faces(points, grid, loops);
 }
 
 }  // namespace blockrand::elements
