@@ -64,6 +64,7 @@ class Loop {
   void run() {
     Loop* const outer = std::exchange(loop_of_thread, this);
     std::unique_lock lock(mutex_);
+    ++threads_;
     while (consumed_ < end_) {
       if (!consuming_ && done_[consumed_ % in_flight_]) {
         // Consumption goes before new work: it frees a slot.
@@ -109,7 +110,8 @@ class Loop {
 
   std::size_t sharing_threads() {
     const std::unique_lock lock(mutex_);
-    return waiting_ + 1;
+    // Where all items have begun, those at work on other items will be free before long.
+    return started_ < end_ ? waiting_ + 1 : std::max(threads_, waiting_ + 1);
   }
 
   void rethrow() const {
@@ -156,7 +158,8 @@ class Loop {
   const std::function<void(std::size_t)>& consume_;
   const ItemLoad& load_;
   std::vector<Shared*> shared_;  ///< in the order in which they were begun
-  std::size_t waiting_ = 0;      ///< threads that have nothing to do
+  std::size_t threads_ = 0;      ///< that take part
+  std::size_t waiting_ = 0;      ///< of them, those that have nothing to do
 };
 
 }  // namespace

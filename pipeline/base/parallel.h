@@ -37,7 +37,7 @@ void ordered_parallel(std::size_t count, int workers, std::size_t in_flight,
 /// begun by then is left out.
 void share(std::size_t count, const std::function<void(std::size_t)>& work);
 
-/// How many threads could work on what is shared now, at least 1: for dividing work. It says nothing of a moment later, so that no
+/// How many threads could work on what is shared now or before long, at least 1: for dividing work. It says nothing of a moment later, so that no
 /// result may depend on it.
 std::size_t sharing_threads();
 

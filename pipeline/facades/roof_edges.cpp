@@ -11,6 +11,7 @@
 
 #include "pipeline/attributes/roof_edges.h"
 #include "pipeline/facades/bodies_on_roofs.h"
+#include "pipeline/facades/buildings_in_stretches.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/model/vector.h"
@@ -313,9 +314,11 @@ class RoofDresser {
 
 void add_roof_edges(model::Region& region, const masses::BuiltMasses& masses, const attributes::Defaults& defaults,
                     const OutlinesNear& outlines_near) {
-  RoofDresser dresser(masses, defaults, outlines_near);
-  for (std::uint32_t b = 0; b < region.buildings.size(); ++b)
-    if (region.buildings[b].owned) dresser.dress(region.buildings[b], b, region.report);
+  for_each_owned_building(
+      region, [&] { return RoofDresser(masses, defaults, outlines_near); },
+      [](RoofDresser& dresser, model::Building& building, std::uint32_t index, model::Report& report) {
+        dresser.dress(building, index, report);
+      });
 }
 
 }  // namespace blockrand::facades

@@ -13,6 +13,7 @@
 #include "pipeline/attributes/roof_edges.h"
 #include "pipeline/base/random.h"
 #include "pipeline/facades/bodies_on_roofs.h"
+#include "pipeline/facades/buildings_in_stretches.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/plan_shape.h"
 #include "pipeline/geometry/polygon_measures.h"
@@ -287,9 +288,11 @@ int wanted_chimneys(const model::Attributes& attributes, model::BuildingPosition
 
 void add_roof_installations(model::Region& region, const masses::BuiltMasses& masses,
                             const attributes::Defaults& defaults, const RoofInstallationOptions& options) {
-  RoofInstaller installer(masses, defaults, options);
-  for (std::uint32_t b = 0; b < region.buildings.size(); ++b)
-    if (region.buildings[b].owned) installer.furnish(region.buildings[b], b, region.report);
+  for_each_owned_building(
+      region, [&] { return RoofInstaller(masses, defaults, options); },
+      [](RoofInstaller& installer, model::Building& building, std::uint32_t index, model::Report& report) {
+        installer.furnish(building, index, report);
+      });
 }
 
 }  // namespace blockrand::facades

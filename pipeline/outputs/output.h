@@ -101,6 +101,9 @@ class Output {
   virtual std::string reads_of_tile(std::size_t /*shard*/) const { return {}; }
   /// Takes over what write_tile returned, in tile order, one at a time. `tile.files` is complete.
   virtual void take(const FinishedTile& /*tile*/, std::any /*product*/) {}
+  /// All tiles are taken: begins with what needs no file of the whole, beside the others' `finish` where there are several
+  /// workers. `build` must outlive `conclude`.
+  virtual void begin_finish(const FinishedBuild& /*build*/) {}
   /// Writes the files of the whole build.
   virtual void finish(const FinishedBuild& /*build*/) {}
   /// Writes the files that list all others: after every output has finished.

@@ -247,6 +247,7 @@ void finish_outputs(const OpenOutputs& open, const Region& whole, const Account&
       .tell = [&](std::string_view path,
                   std::string figures) { record.summary.figures[std::string(path)] = std::move(figures); }};
   std::uint64_t ready = 0;
+  for (const auto& output : open.list) output->begin_finish(finished);
   for (const auto& output : open.list) {
     output->finish(finished);
     progress.advance_to(++ready);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "pipeline/base/parallel.h"
 #include "pipeline/outputs/gltf/meshopt.h"
 #include "pipeline/outputs/number_text.h"
 
@@ -172,12 +173,27 @@ std::string GlbDocument::write(Compression compression) {
   const bool compress = compression == Compression::meshopt && !view_numbers_.empty();
   if (compress) use("EXT_meshopt_compression", true);
 
+  std::vector<std::size_t> lengths;  // of views before they are compressed
+  for (View& view : views_) {
+    if (view.stream && info_of(*view.stream).coding != MeshoptCoding::triangles)
+      pad(view.bytes, coded_size(*view.stream));
+    lengths.push_back(view.bytes.size());
+  }
+  if (compress)
+    base::share(views_.size(), [&](std::size_t i) {
+      View& view = views_[i];
+      if (!view.stream) return;
+      const std::size_t size = coded_size(*view.stream);
+      view.bytes = meshopt_encode(view.bytes, size, lengths[i] / size, info_of(*view.stream).coding);
+    });
+
   // Bytes stay in their views until the file is put together: each is copied once.
   std::uint64_t end = 0;       // of the binary part
   std::uint64_t unpacked = 0;  // size of the buffer that is there once everything is decompressed
   std::vector<std::string> views;
   const auto aligned = [](std::uint64_t size) { return (size + kAlignment - 1) / kAlignment * kAlignment; };
-  for (View& view : views_) {
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    const View& view = views_[i];
     std::string json = "{";
     end = aligned(end);
     if (!view.stream) {
@@ -186,8 +202,7 @@ std::string GlbDocument::write(Compression compression) {
       if (end > 0) field(json, "byteOffset", end);
     } else {
       const StreamInfo info = info_of(*view.stream);
-      if (info.coding != MeshoptCoding::triangles) pad(view.bytes, coded_size(*view.stream));
-      const std::size_t length = view.bytes.size();
+      const std::size_t length = lengths[i];
       const std::uint64_t offset = compress ? unpacked : end;
       field(json, "buffer", compress ? 1 : 0);
       field(json, "byteLength", length);
@@ -196,7 +211,6 @@ std::string GlbDocument::write(Compression compression) {
       if (compress) {
         const std::size_t size = coded_size(*view.stream);
         const std::size_t count = length / size;
-        view.bytes = meshopt_encode(view.bytes, size, count, info.coding);
         json += ",\"extensions\":{\"EXT_meshopt_compression\":{";
         field(json, "buffer", 0);
         field(json, "byteLength", view.bytes.size());

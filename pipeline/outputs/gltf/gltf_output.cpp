@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "pipeline/base/error.h"
+#include "pipeline/base/parallel.h"
 #include "pipeline/base/text.h"
 #include "pipeline/footprints/shard.h"
 #include "pipeline/georef/frames.h"
@@ -73,12 +74,10 @@ GlbOptions glb_options(const OutputContext& context, const georef::EnuFrame& fra
 }
 
 /// What viewers show from farther away than facades: roofs (tileset.h says from how far).
-void write_coarser_level(const model::Region& region, GlbOptions options, const std::string& place, TileEntry& entry,
-                         const OutputContext& context, std::vector<base::PublishedFile>& files) {
-  options.lod = 2;
-  const Glb glb = write_glb(region, options);
+void write_coarser_level(const Glb& glb, const std::string& place, TileEntry& entry, const OutputContext& context,
+                         std::vector<base::PublishedFile>& files) {
   if (glb.triangles == 0) return;
-  entry.coarser.push_back({fmt::format("{}_lod{}.glb", place, options.lod), kRoofError});
+  entry.coarser.push_back({place + "_lod2.glb", kRoofError});
   write_served(entry.coarser.back().uri, glb.bytes, context.options, context.folder, files);
   entry.min = {std::min(entry.min.x, glb.min.x), std::min(entry.min.y, glb.min.y), std::min(entry.min.z, glb.min.z)};
   entry.max = {std::max(entry.max.x, glb.max.x), std::max(entry.max.y, glb.max.y), std::max(entry.max.z, glb.max.z)};
@@ -201,7 +200,16 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
     for (std::size_t i = 0; i < in.size(); ++i)
       out[i] = frame.to_local({in[i].x, in[i].y, in[i].z + plane(in[i].x, in[i].y)});
   };
-  Glb glb = write_glb(region, options);
+  Glb glb, roofs;
+  base::share(context.lod >= 3 ? 2 : 1, [&](std::size_t i) {
+    if (i == 0) {
+      glb = write_glb(region, options);
+    } else {
+      GlbOptions coarser = options;
+      coarser.lod = 2;
+      roofs = write_glb(region, coarser);
+    }
+  });
   if (glb.triangles == 0) return std::nullopt;
   TileEntry entry;
   entry.id = id;
@@ -218,7 +226,7 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
     write_served(entry.uri, glb.bytes, context.options, context.folder, tile.files);
   }
   entry.enu_to_ecef = options.frame.enu_to_ecef;
-  if (context.lod >= 3) write_coarser_level(region, options, place, entry, context, tile.files);
+  write_coarser_level(roofs, place, entry, context, tile.files);
   set_bounds(entry, frame.frame());
   return entry;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <future>
 #include <iterator>
 #include <map>
 #include <tuple>
@@ -202,8 +203,14 @@ class ReportOutput : public OutputOf<TileShare> {
     pictures_.add(std::move(share.picture));
     if (!share.plan.buildings.empty()) plans_.push_back(std::move(share.plan));
   }
+  void begin_finish(const FinishedBuild&) override {
+    drawn_ = std::async(context_.workers > 1 ? std::launch::async : std::launch::deferred,
+                        [this] { return pictures_.take(context_.workers, context_.memo, attribution(context_)); });
+  }
   /// The page lists the files of all outputs.
   void conclude(const FinishedBuild& build) override {
+    std::ranges::sort(build.files, {}, &base::PublishedFile::path);
+    std::optional<EmbeddedModel> embedded = model(build);
     PlanSheet plan = draw_plan(std::move(plans_), context_.context, plan_choice_, context_.projection,
                                plan_words(context_, page_.buildings_built()), context_.memo);
     if (!plan.png.empty()) build.files.push_back(context_.folder.write("plan.png", plan.png));
@@ -213,8 +220,8 @@ class ReportOutput : public OutputOf<TileShare> {
     if (!plan.png.empty()) facts.context.plan = std::move(plan.in_report);
     facts.context.plan_note = std::move(plan.note);
     facts.pictures_note = pictures_.note();
-    facts.pictures = pictures_.take(context_.workers, context_.memo, attribution(context_));
-    facts.model = model(build);
+    facts.pictures = drawn_.get();
+    facts.model = std::move(embedded);
     build.files.push_back(context_.folder.write("report.html", page_.html(facts)));
   }
 
@@ -250,6 +257,7 @@ class ReportOutput : public OutputOf<TileShare> {
   std::vector<picture::PlanTile> plans_;
   base::StagedFile table_;
   ReportBuilder page_;
+  std::future<std::vector<ReportPicture>> drawn_;  ///< the last member: it waits for its thread before the others go
 };
 
 }  // namespace

@@ -190,6 +190,34 @@ TEST(Share, StretchesCoverAllOnce) {
         [](std::size_t) {});
 }
 
+/// A large tile beside a small one, and none left: the thread of the small one will help.
+TEST(Share, ThreadsOfLastItemsCount) {
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool begun = false, asked = false;
+  std::size_t threads = 0;
+  const auto wait_for = [&](std::unique_lock<std::mutex>& lock, const bool& what) {
+    changed.notify_all();
+    changed.wait_for(lock, std::chrono::seconds(60), [&] { return what; });
+  };
+  ordered_parallel(
+      2, 2, 2,
+      [&](std::size_t i) {
+        std::unique_lock lock(mutex);
+        if (i == 1) {
+          begun = true;
+          wait_for(lock, asked);
+          return;
+        }
+        wait_for(lock, begun);
+        threads = sharing_threads();
+        asked = true;
+        changed.notify_all();
+      },
+      [](std::size_t) {});
+  EXPECT_EQ(threads, 2u);
+}
+
 TEST(Share, OutsideOfALoopTheCallerDoesAll) {
   std::vector<std::size_t> order;
   share(3, [&](std::size_t i) { order.push_back(i); });
