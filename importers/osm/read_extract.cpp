@@ -49,7 +49,7 @@ class ExtractWriter {
       };
       std::ranges::for_each(options.parts, clip);
       if (options.parts.empty()) clip(*options.bbox);
-      placeless_ = options.placeless;
+      placeless_ = options.placeless, touching_ = options.touching;
     }
   }
 
@@ -243,27 +243,34 @@ class ExtractWriter {
     return range;
   }
 
-  /// Which accounts lie in the clip boxes: those with a position by the centre of their own bounding box, those that
+  /// Which accounts lie in the clip boxes: those with a position by their own bounding box (its centre, or all of it), those that
   /// another object stands for with that object as well: they are told where they lie, whatever stands for them.
   void decide_clip(const Accounts& accounts, std::vector<bool>& kept) const {
-    const auto holds_centre = [&](const Box& box) {
-      // Doubled, so that the centre is exact.
-      const std::int64_t x = box.west + box.east, y = box.south + box.north;
-      return std::ranges::any_of(clip_, [&](const Box& clip) {
-        return x >= 2 * clip.west && x <= 2 * clip.east && y >= 2 * clip.south && y <= 2 * clip.north;
-      });
-    };
-    const auto centre_inside = [&](const Account& account) {
+    const auto holds = [&](const Box& box) { return touching_ ? touches(box) : holds_centre(box); };
+    const auto is_inside = [&](const Account& account) {
       const Box box = box_of(accounts, account);
-      return box.empty() ? placeless_ : holds_centre(box);
+      return box.empty() ? placeless_ : holds(box);
     };
     for (std::size_t i = 0; i < accounts.list.size(); ++i) {
       const Account& account = accounts.list[i];
       const bool follows = account.state == ObjectState::duplicate || account.state == ObjectState::represented;
       const Account* master = follows ? accounts.find(account.related) : nullptr;
       const Box own = master != nullptr ? box_of(accounts, account) : Box();
-      kept[i] = centre_inside(master != nullptr ? *master : account) || (!own.empty() && holds_centre(own));
+      kept[i] = is_inside(master != nullptr ? *master : account) || (!own.empty() && holds(own));
     }
+  }
+
+  bool holds_centre(const Box& box) const {
+    // Doubled, so that the centre is exact.
+    const std::int64_t x = box.west + box.east, y = box.south + box.north;
+    return std::ranges::any_of(clip_, [&](const Box& clip) {
+      return x >= 2 * clip.west && x <= 2 * clip.east && y >= 2 * clip.south && y <= 2 * clip.north;
+    });
+  }
+  bool touches(const Box& box) const {
+    return std::ranges::any_of(clip_, [&](const Box& clip) {
+      return box.west <= clip.east && box.east >= clip.west && box.south <= clip.north && box.north >= clip.south;
+    });
   }
 
   Box box_of(const Accounts& accounts, const Account& account) const {
@@ -290,16 +297,14 @@ class ExtractWriter {
     Box box;
     for (const AreaRing& ring : f.rings)
       for (const Vertex& v : ring.vertices) box.add(v.location);
-    return !box.empty() && std::ranges::any_of(clip_, [&](const Box& clip) {
-      return box.west <= clip.east && box.east >= clip.west && box.south <= clip.north && box.north >= clip.south;
-    });
+    return !box.empty() && touches(box);
   }
 
   const RawData& data_;
   const OsmFile& file_;
   model::Extract& out_;
   std::vector<Box> clip_;  ///< empty: everything is kept
-  bool placeless_ = false;
+  bool placeless_ = false, touching_ = false;
   std::vector<Text> texts_;  ///< by raw string id
   std::deque<std::string> cleaned_;
   std::vector<std::pair<Text*, Text*>> sorted_;

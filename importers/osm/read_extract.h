@@ -23,6 +23,9 @@ struct ReadOptions {
   /// Boxes within `bbox`: what is in none of them is not kept; empty: all of it.
   std::vector<std::array<double, 4>> parts;
   bool placeless = false;  ///< with `bbox`: buildings without any known position are kept all the same
+  /// With `bbox`: a building is kept when its bounding box touches, as a feature is. For windows around what is built: a building
+  /// is a neighbour wherever it stands, however far off its middle.
+  bool touching = false;
 };
 
 /// Reads `.osm`, `.osm.gz`, `.osm.bz2`, `.osm.pbf` and `.pbf`, with the objects in any order and any versions.

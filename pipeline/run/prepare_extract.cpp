@@ -51,7 +51,7 @@ LocatedExtract locate_extract(const BuildOptions& options, const std::optional<T
     progress.advance_to(static_cast<std::uint64_t>((done + fraction * left / 2) * static_cast<double>(kScale)));
   };
   read_options.bbox = tile ? tile->window : options.bbox;
-  if (tile) read_options.parts = tile->parts;
+  if (tile) read_options.parts = tile->parts, read_options.touching = true;
   model::Extract extract = store && tile ? store->read(read_options, tile->placeless)
                                          : importers::osm::read_extract(options.input, read_options);
   if (!options.input_told.empty()) extract.file = options.input_told;

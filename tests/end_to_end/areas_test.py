@@ -468,6 +468,41 @@ class RegionInAreas(RegionTest):
             first, second = (without_runs(hashes(f)) for f in (self.current(folder), clean))
             self.assertEqual(sorted(p for p in first.keys() | second.keys() if first.get(p) != second.get(p)), [])
 
+    def test_a_neighbour_whose_middle_lies_far_off(self):
+        """Of a multipolygon one way stands beside a house and another 12 km to the north-east (no building is as wide: there is no outline). A night that
+        looks into the house alone knows of it: a corner that both share stays in the straight wall of one."""
+        tile = 180 / 2 ** 15  # degrees
+        west, south = (math.floor(13.2 / tile) + 0.5) * tile, (math.floor(52.0 / tile) + 0.5) * tile
+        objects = town(200)
+
+        def square(number, x, y):
+            corners = [(x + dx * METRE, y + dy * METRE) for dx, dy in ((0, 0), (18, 0), (18, 11), (0, 11))]
+            objects.extend(ring(500000 + 100 * number, 7000 + number, corners, {'building': 'yes'}))
+        square(0, west, south)
+        square(1, west + 0.14, south + 0.09)
+        # Two corners of the first square lie in its east wall.
+        corners = [(west + dx * METRE, south + dy * METRE) for dx, dy in ((-20, -6), (0, -6), (0, 17), (-20, 17))]
+        objects += [Node(600000 + i, *c) for i, c in enumerate(corners)]
+        objects.append(Way(8000, [600000, 600001, 500000, 500003, 600002, 600003, 600000], {'building': 'yes'}))
+        # A house that their tile hears of and the multipolygon does not; another one far off, so that not all is concerned.
+        square(2, west - 300 * METRE, south - 300 * METRE)
+        square(3, west + 0.08, south - 20 * tile)
+        map_ = Map(objects)
+        map_.put(Relation(9000, [('way', 7000, 'outer'), ('way', 7001, 'outer')],
+                          {'type': 'multipolygon', 'building': 'yes'}))
+        beside = map_.objects[(1, 7002)]
+        folder = self.region('far_middle', self.SETTINGS.replace(LEVEL, '9'))
+        self.update(folder, map_.write(self.path('far_middle.osm')))
+        for metres in (0.3, 0.6):
+            node = map_.objects[(0, beside.refs[0])]
+            map_.edit(node, lat=node.lat + metres * METRE)
+            self.update(folder, map_.write_changes(self.path('far_middle.osc')))
+            runs = [read_json(self.current(folder), 'areas', a, 'run.json') for a in areas(self.current(folder))]
+            self.assertTrue(any('looked_into' in run for run in runs), 'the whole area was looked into: nothing is tested')
+            clean = self.clean(map_, folder, '--lod', '2', '--areas', '9')
+            first, second = (without_runs(hashes(f)) for f in (self.current(folder), clean))
+            self.assertEqual(sorted(p for p in first.keys() | second.keys() if first.get(p) != second.get(p)), [])
+
     def test_places_far_from_each_other_in_one_area(self):
         """Two towns and one area, an edit in each on one night: what lies between is not read, and nothing differs."""
         objects = town(300, 11.0, 51.5)

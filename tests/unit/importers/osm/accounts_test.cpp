@@ -378,6 +378,14 @@ TEST(Accounts, TheClipBoxKeepsWhatIsCentredInside) {
   EXPECT_EQ(state(e, "w8"), "duplicate of r1");
   EXPECT_EQ(state(e, "w9"), "absent");
   EXPECT_EQ(e.counts.buildings(), 5u);
+
+  options.touching = true;
+  const auto more = text.read(options);
+  expect_books_balance(more);
+  EXPECT_EQ(state(more, "w2"), "pending") << "two metres of it lie inside";
+  EXPECT_EQ(state(more, "r1"), "pending") << "its middle lies outside";
+  EXPECT_EQ(state(more, "w5"), "absent");
+  EXPECT_EQ(more.counts.buildings(), 8u);
 }
 
 }  // namespace
