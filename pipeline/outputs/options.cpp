@@ -203,6 +203,33 @@ bool OutputOptions::writes(std::string_view format) const {
   return std::ranges::find(formats, format) != formats.end();
 }
 
+std::vector<std::string> unread_options(const OutputOptions& o, int lod) {
+  const OutputOptions usual;
+  const bool citygml = o.writes("citygml"), cityjson = o.writes("cityjson") || o.single_cityjson;
+  const bool gltf = o.writes("gltf"), glb = gltf || o.single_glb, facades = lod >= 3;
+  const struct {
+    const char* name;
+    bool is_asked, is_read;
+    const char* where;
+  } all[] = {
+      {"gzip", o.gzip, citygml || o.writes("cityjson"), "citygml and cityjson"},
+      {"precompress", o.precompress, gltf, "gltf"},
+      {"evidence", o.evidence, glb || citygml || cityjson, "gltf, citygml and cityjson"},
+      {"attributes", o.profile != usual.profile, glb, "gltf"},
+      {"compress", o.compression != usual.compression, glb, "gltf"},
+      {"instancing", o.instancing != usual.instancing, glb && facades, "gltf, of level 3"},
+      {"max-glb-bytes", o.max_glb_bytes != usual.max_glb_bytes, gltf, "gltf"},
+      {"citygml-detail", o.citygml_detail != usual.citygml_detail, citygml && facades, "citygml, of level 3"},
+      {"objects", o.objects != usual.objects, o.single_glb, "gltf with --single-glb"},
+  };
+  std::vector<std::string> sentences;
+  for (const auto& option : all)
+    if (option.is_asked && !option.is_read)
+      sentences.push_back("--" + std::string(option.name) + " changes nothing here: it is about the format " +
+                          option.where);
+  return sentences;
+}
+
 base::OptionTable<OutputOptions> output_options() {
   base::OptionTable<OutputOptions> table = base::concatenated({which_files(), what_files_hold()});
   for (base::Option<OutputOptions>& option : table) option.commands |= base::kInfo;  // it tells what they cost

@@ -45,6 +45,10 @@ struct OutputOptions {
   bool writes(std::string_view format) const;
 };
 
+/// What is asked for and nothing reads, since no file is written that it would change: a sentence each, of options that are not as by default.
+/// \param lod  of the build
+std::vector<std::string> unread_options(const OutputOptions& options, int lod);
+
 /// How users set them: in the main section of a build's options.
 base::OptionTable<OutputOptions> output_options();
 

@@ -28,6 +28,10 @@ const std::string& checked_output(const BuildOptions& options) {
   return options.output;
 }
 
+void warn_of_unread(const BuildOptions& options, base::Progress& progress) {
+  for (const std::string& warning : outputs::unread_options(options.outputs, options.lod)) progress.warn(warning);
+}
+
 void warn_of_heights(const BuildOptions& options, const BuildInputs& inputs, const georef::LonLat& centre,
                      base::Progress& progress) {
   if (!inputs.terrain && !options.ground_height) progress.warn(context::ground_warning(centre));

@@ -15,6 +15,9 @@ namespace blockrand::run {
 /// BuildOptions::output. \throws base::UsageError  an input lies in it, or the folder of kept work
 const std::string& checked_output(const BuildOptions& options);
 
+/// What is asked of the outputs and no output reads.
+void warn_of_unread(const BuildOptions& options, base::Progress& progress);
+
 /// \param centre  of the extract, degrees
 void warn_of_heights(const BuildOptions& options, const BuildInputs& inputs, const georef::LonLat& centre,
                      base::Progress& progress);

@@ -296,6 +296,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
 
   // Everything that can be refused without reading the extract is refused first.
   progress.begin("check");
+  if (!part) warn_of_unread(options, progress);
   if (!options.crs.empty()) georef::check_crs(options.crs);
   Place place(options, progress);
   base::StagedFolder& folder = place.folder;

@@ -27,6 +27,7 @@
 #include "pipeline/run/area_changes.h"
 #include "pipeline/run/area_overview.h"
 #include "pipeline/run/area_survey.h"
+#include "pipeline/run/before_tiles.h"
 #include "pipeline/run/build_inputs.h"
 #include "pipeline/run/divide_extract.h"
 #include "pipeline/run/earlier_area.h"
@@ -96,6 +97,7 @@ class AreaBuild {
   }
 
   BuildSummary run() {
+    warn_of_unread(options_, progress_);
     if (!options_.crs.empty()) georef::check_crs(options_.crs);
     { const BuildInputs inputs(options_); }  // what is wrong with them is told before the extract is read
     open_cache();

@@ -37,6 +37,7 @@ void check_place(const BuildOptions& options, const outputs::BuiltSize& size, co
 BuildPlan plan_build(const BuildOptions& options, base::Progress& progress) {
   refuse_contradictions_of_areas(options);
   progress.begin("check");
+  warn_of_unread(options, progress);
   if (!options.crs.empty()) georef::check_crs(options.crs);
   const base::StagedFolder folder(checked_output(options), options.force,
                                   {.foreign = foreign_files, .counts_only = true});

@@ -95,6 +95,20 @@ class Options(BuildTest):
         self.assertEqual(run.code, 2, run)
         self.assertIn('GZIP_DIFFERS', run.out)
 
+    def test_what_no_format_reads_is_told(self):
+        """An option that changes no file of the formats that are asked for is named, and one that does is not."""
+        asked = ('--precompress', '--gzip', '--citygml-detail', 'full', '--objects', 'tile', '--compress', 'none', '--evidence')
+        for formats, more, told in (('gpkg', (), ('precompress', 'gzip', 'citygml-detail', 'objects', 'compress', 'evidence')),
+                                    ('gltf', ('--lod', '3', '--single-glb'), ('gzip', 'citygml-detail')),
+                                    ('citygml', ('--lod', '2'), ('precompress', 'citygml-detail', 'objects', 'compress')),
+                                    ('gpkg', ('--areas', '12'), ('precompress', 'gzip', 'citygml-detail', 'objects', 'compress', 'evidence'))):
+            for command in (('build', SAMPLE, '-o', self.path('unread')), ('build', SAMPLE, '-o', self.path('unread'), '--dry-run')):
+                run = blockrand(*command, *asked, '--formats', formats, *more, '--no-report', '--progress', 'none',
+                                '--force')
+                self.assertEqual(run.code, 0, run)
+                named = [line.split('--')[1].split(' ')[0] for line in (run.out + run.err).splitlines() if 'changes nothing here' in line]
+                self.assertEqual(sorted(named), sorted(told), (formats, command))
+
     def test_single_glb(self):
         out = self.build(SAMPLE, 'single', '--single-glb')
         self.valid(out)
