@@ -64,7 +64,7 @@ const Names* names_of(std::string_view feature) {
        0,
        {"untold", "flats", "residential", "house", "detached or terraced", "outbuilding", "offices", "shop", "industry",
         "church", "public", "hotel", "other"}},
-      {"tag_heritage", "listed or historic, as tagged", 0, {"no", "yes"}},
+      {"tag_heritage", "listed or historic, as tagged", 0, {"no", "known by an article or its architect", "yes"}},
       {"tag_shop", "a shop, office or amenity is tagged", 0, {"no", "yes"}},
       {"tag_number", "house number, as tagged", 0, {"without", "with"}},
   };
@@ -201,7 +201,7 @@ std::string weights_text(const Json& style, const std::string& own, const std::s
                elsewhere = difference(style.at("elsewhere"), own, second);
   if (std::fabs(prior) >= kSeenWeight)
     text += weight_row(prior, "", "how frequent both are before anything is known of it");
-  text += weight_row(elsewhere, "", "what is usual in the region, and the houses of its row and its block");
+  text += weight_row(elsewhere, "", "what is usual in the region, the houses of its row and block, and its era");
   sum += prior + elsewhere;
   return text + weight_row(sum, "",
                            fmt::format("together: {} is {} as {}", sum < 0 ? second : own, odds_text(sum),

@@ -141,6 +141,7 @@ struct Classifier {
   void eras_and_styles();
   void quarters();
   void smooth_styles();
+  void reconcile_eras();
   void storeys_and_roofs();
 };
 
@@ -292,6 +293,20 @@ void Classifier::smooth_styles() {
   }
 }
 
+/// Era and class become one decision; what that changes of the class is told with what else is not its own evidence.
+void Classifier::reconcile_eras() {
+  constexpr double kLeast = 1.0 / (1 << 17);  // half a step of probabilities
+  for (std::size_t b = 0; b < n; ++b) {
+    if (!known(b) || out.styles[b].non_house) continue;
+    const std::array<float, kStyles> before = out.styles[b].style;
+    classify::reconcile(out.styles[b], tables.smoothing.era);
+    for (std::size_t c = 0; c < kStyles; ++c)
+      out.elsewhere[b][c] += static_cast<float>(
+          classify::round_log_odds(base::log(std::max(static_cast<double>(out.styles[b].style[c]), kLeast)) -
+                                   base::log(std::max(static_cast<double>(before[c]), kLeast))));
+  }
+}
+
 /// Storeys, sub-style, roof.
 void Classifier::storeys_and_roofs() {
   const std::size_t counts = tables.storey_counts.size();
@@ -349,13 +364,18 @@ void Classifier::storeys_and_roofs() {
         s.substyle = index.value_or(0);
         s.substyle_p = s.style[static_cast<std::size_t>(model::StyleClass::other)];
       } else {
-        // Of the likeliest class, so that the two answers fit together.
-        for (const classify::Substyle& c : classify::substyles(tables, region, sub, tables.catalogue.size()))
-          if (tables.catalogue[c.index].style_class == s.style_class()) {
-            s.substyle = c.index;
-            s.substyle_p = static_cast<float>(c.p);
-            break;
-          }
+        // Of the likeliest class and, where there is one, of the likeliest era, so that the three answers fit together.
+        bool found = false;
+        for (const classify::Substyle& c : classify::substyles(tables, region, sub, tables.catalogue.size())) {
+          const classify::Style& style = tables.catalogue[c.index];
+          if (style.style_class != s.style_class()) continue;
+          const bool fits = classify::occurs_in(style.years, s.built());
+          if (found && !fits) continue;
+          s.substyle = c.index;
+          s.substyle_p = static_cast<float>(c.p);
+          found = true;
+          if (fits) break;
+        }
       }
 
       f[Feature::tag_roof] = std::numeric_limits<float>::quiet_NaN();
@@ -544,6 +564,7 @@ StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, c
   progress.advance_to(2);
   if (options.smooth) classifier.smooth_styles();
   progress.advance_to(3);
+  classifier.reconcile_eras();
   classifier.storeys_and_roofs();
   return std::move(out);
 }

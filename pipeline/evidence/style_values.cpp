@@ -76,6 +76,8 @@ Source source_of_style(std::uint32_t number, const StyleInputs& in) {
   const double region = lead_of(in.styles.region), neighbours = lead_of(in.styles.elsewhere) - region;
   if (tags > std::max({geometry, region, neighbours})) return Source::implied;
   if (region > std::max(geometry, neighbours)) return Source::region;
+  // A date decides the era, and with it the class (classify::reconcile).
+  if (neighbours > geometry && in.tags.dates[number].confidence >= 0.5f) return Source::implied;
   return neighbours > geometry ? Source::neighbours : Source::geometry;
 }
 

@@ -96,6 +96,7 @@ Tables Tables::read(const std::string& configs) {
     t.smoothing.block = s->number("block", 0, 2).value_or(t.smoothing.block);
     t.smoothing.certainty = s->number("certainty", 0.1, 1).value_or(t.smoothing.certainty);
     t.smoothing.doubt = s->number("doubt", 1e-4, 1).value_or(t.smoothing.doubt);
+    t.smoothing.era = s->number("era", 0, 2).value_or(t.smoothing.era);
     s->finish();
   }
   file.finish();
@@ -185,6 +186,48 @@ PerAnswer era_of_years(model::YearRange years, double confidence) {
     out[e] = round_log_odds(base::log(c * share + (1 - c) / model::kEraCount));
   }
   return out;
+}
+
+bool occurs_in(model::YearRange years, model::Era era) { return share_in(years, static_cast<int>(era)) > 0; }
+
+void reconcile(model::BuildingStyle& style, double weight) {
+  constexpr std::size_t kClasses = model::kStyleClassCount, kEras = model::kEraCount;
+  constexpr double kLeast = 1e-4;    // nobody is that sure
+  constexpr double kStep = 1 << 16;  // of probabilities, as in `probabilities`
+  const auto can = [](std::size_t c, std::size_t e) {
+    return agree(static_cast<StyleClass>(c), static_cast<model::Era>(e));
+  };
+  std::array<double, kClasses> own{};
+  for (std::size_t c = 0; c < kClasses; ++c) own[c] = std::max(static_cast<double>(style.style[c]), kLeast);
+  std::array<double, kEras> era{}, fits{};  // fits: what the classes that can be of an era have together
+  double all = 0;
+  for (std::size_t e = 0; e < kEras; ++e) {
+    double say = 0;
+    for (std::size_t c = 0; c < kClasses; ++c)
+      if (can(c, e)) say += base::exp(weight * base::log(own[c])), fits[e] += own[c];
+    all += era[e] = std::max(static_cast<double>(style.era[e]), kLeast) * say;
+  }
+  std::array<double, kClasses> p{};
+  for (std::size_t e = 0; e < kEras; ++e) {
+    era[e] = std::floor(era[e] / all * kStep + 0.5) / kStep;
+    style.era[e] = static_cast<float>(era[e]);
+    for (std::size_t c = 0; c < kClasses; ++c)
+      if (can(c, e)) p[c] += era[e] * own[c] / fits[e];
+  }
+  for (double& v : p) v = std::floor(v * kStep + 0.5) / kStep;
+  // The likeliest class of the likeliest era: what is likelier over all eras gives it half of its lead.
+  const std::size_t built = static_cast<std::size_t>(style.built());
+  std::size_t best = static_cast<std::size_t>(StyleClass::other);
+  for (std::size_t c = 0; c < kClasses; ++c)
+    if (can(c, built) && own[c] > own[best]) best = c;
+  for (std::size_t c = 0; c < kClasses; ++c)
+    if (c != best && p[c] >= p[best]) {
+      const double half = std::floor((p[c] + p[best]) / 2 * kStep);
+      const double sum = p[c] + p[best];
+      p[best] = half / kStep + 1 / kStep;
+      p[c] = sum - p[best];
+    }
+  for (std::size_t c = 0; c < kClasses; ++c) style.style[c] = static_cast<float>(p[c]);
 }
 
 std::vector<Substyle> substyles(const Tables& tables, const RegionPrior* region, const SubstyleFacts& facts,

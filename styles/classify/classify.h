@@ -27,6 +27,7 @@ struct Smoothing {
   /// is surer than it is right. Chosen by the reliability table of all places.
   double certainty = 0.8;
   double doubt = 0.03;  ///< added to each probability: nobody is ever certain
+  double era = 0.3;     ///< how much the style has a say in the era: power of its probabilities
 };
 
 /// What may be assumed of a region before a building is looked at, by its district rules (`[prior]`).
@@ -83,6 +84,28 @@ PerAnswer storeys_prior(const Tables& tables, const RegionPrior& region, const m
 /// Era from tagged years: log of what the range leaves to each era, with (1 - confidence) shared by all. Years of which
 /// a tenth lies in another era leave it a tenth.
 PerAnswer era_of_years(model::YearRange years, double confidence);
+
+/// Whether a house of that class can be of that era: Gründerzeit and tenements are of 1840 to 1918, what is modern is
+/// younger by definition (model::StyleClass).
+constexpr bool agree(model::StyleClass c, model::Era era) {
+  switch (c) {
+    case model::StyleClass::gruenderzeit:
+    case model::StyleClass::tenement:
+      return era == model::Era::from1840;
+    case model::StyleClass::modern:
+      return era == model::Era::from1919 || era == model::Era::post1945;
+    case model::StyleClass::other:
+      return true;
+  }
+  return true;
+}
+
+/// Makes era and class one decision: the era has the last word, the class says `weight` of its log-odds to it; then the
+/// classes that exclude the era share what is left to them by being wrong about it.
+void reconcile(model::BuildingStyle& style, double weight);
+
+/// Whether some of a style's years lie in the era.
+bool occurs_in(model::YearRange years, model::Era era);
 
 /// The likeliest of a class's sub-styles: weight of the region x how well years, position, quarter, storeys and roof
 /// fit.

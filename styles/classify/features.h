@@ -72,7 +72,7 @@ namespace blockrand::classify {
     "use: 0 untold, 1 flats, 2 residential, 3 house, 4 detached, terraced, 5 outbuilding, 6 offices, 7 shop, 8 " \
     "industry, 9 church, 10 public, 11 hotel, 12 other")                                                         \
   X(tag_year, "", "tag", "year of construction, of start_date or building:architecture")                         \
-  X(tag_heritage, "", "tag", "1 where it is listed or historic")                                                 \
+  X(tag_heritage, "", "tag", "1 known by an article or its architect, 2 listed or historic")                     \
   X(tag_shop, "", "tag", "1 where a shop, office or amenity is noted")                                           \
   X(tag_number, "", "tag", "1 with, 0 without a house number")
 

@@ -69,6 +69,11 @@ TagTables TagTables::read(const std::string& path) {
     }
     table->finish();
   }
+  if (auto table = file.table("listing")) {
+    out.listed = table->texts("listed").value_or(std::vector<std::string>{});
+    out.known = table->texts("known").value_or(std::vector<std::string>{});
+    table->finish();
+  }
   out.attached = file.texts("attached").value_or(std::vector<std::string>{});
   file.finish();
   return out;
@@ -95,7 +100,10 @@ void fill_tag_features(FeatureVector& f, const model::MappedAttributes& a, std::
     const std::string_view value = tag(key);
     return !value.empty() && value != "no" && value != "none" && value != "vacant";
   };
-  if (told(osm_key::kHeritage) || told(osm_key::kHistoric)) f[Feature::tag_heritage] = 1;
+  if (told(osm_key::kHeritage) || told(osm_key::kHistoric) || std::ranges::any_of(tables.listed, told))
+    f[Feature::tag_heritage] = 2;
+  else if (std::ranges::any_of(tables.known, told))
+    f[Feature::tag_heritage] = 1;
   if (told(osm_key::kShop) || told(osm_key::kOffice) || told(osm_key::kAmenity)) f[Feature::tag_shop] = 1;
   f[Feature::tag_number] = tag(osm_key::kAddrHousenumber).empty() ? 0.f : 1.f;
 }

@@ -19,6 +19,7 @@ int roof_kind(model::RoofShape shape);
 struct TagTables {
   std::map<std::string, int, std::less<>> use;           ///< building=* → value of Feature::tag_use
   std::map<std::string, int, std::less<>> architecture;  ///< building:architecture=* → year
+  std::vector<std::string> listed, known;                ///< keys: of lists of monuments; of what is written about
   std::vector<std::string> attached;                     ///< sub-styles that stand in rows and pairs only
   /// Sub-styles built for one kind of use (ids of the catalogue), by the value of Feature::tag_use.
   std::map<int, std::vector<std::string>> styles_of_use;

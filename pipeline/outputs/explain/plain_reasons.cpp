@@ -78,7 +78,8 @@ constexpr Sentence kSentences[] = {
     {"tag_storeys", "{} storeys are mapped", false, {}, "one storey is mapped"},
     {"tag_roof_storeys", "{} storeys in the roof are mapped", false, "no storey in the roof is mapped",
      "a storey in the roof is mapped"},
-    {"tag_heritage", "it is mapped as listed or historic", false, "it is not mapped as listed or historic"},
+    {"tag_heritage", "it is mapped as listed or historic", false, "it is not mapped as listed or historic",
+     "it is known by an article or its architect"},
     {"tag_shop", "a shop, office or the like is mapped in it", false, "no shop or office is mapped in it"},
     {"tag_number", "it has a house number", false, "it has no house number"},
 };

@@ -30,6 +30,7 @@ from evaluate import calibration, confusion  # noqa: F401
 
 CONDITIONS = ("hidden", "tenths", "quarter")
 TITLES = {"hidden": "everything hidden", "tenths": "tenths", "quarter": "this quarter hidden"}
+LABELS = ["storeys", "roof_shape", "year"]  # rows without one count for contradictions alone: a tenth is enough
 LEAST = 30  # labels that make a city a vote of its own
 DECADES = [1840, 1860, 1880, 1900, 1920, 1940, 1960, 1980, 2000]  # borders of 20-year classes
 REACH = 150  # m: neighbours of the baseline
@@ -377,13 +378,14 @@ def run(a, folds):
 
 def read_cities(work, folds, configs, small=False):
     years, classes = read_catalogue(configs)
+    ids = {r["id"] for r in common.read_labels()}
     out = []
     for city in dict.fromkeys(r["city"] for r in folds):
         rows = [r for r in folds if r["city"] == city and os.path.exists(os.path.join(work, stem(r["file"]) + ".csv"))]
         if small:
             rows = [r for r in rows if not r["file"].startswith("berlin-2014")]
         if rows:
-            out.append(City(city, rows[0]["pool"] == "in", [common.Table(city, os.path.join(work, stem(r["file"]) + ".csv")) for r in rows], years))
+            out.append(City(city, rows[0]["pool"] == "in", [common.Table(city, os.path.join(work, stem(r["file"]) + ".csv"), LABELS, ids) for r in rows], years))
     return out, years, classes
 
 

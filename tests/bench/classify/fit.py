@@ -25,7 +25,7 @@ TAGS = {"tag_storeys", "tag_roof", "tag_roof_storeys", "tag_use", "tag_year", "t
 # Edges where bins are categories.
 EDGES = {"tag_roof": [1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5], "tag_use": [v + 0.5 for v in range(12)],
          "tag_storeys": [1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 8.5], "tag_year": [1840, 1919, 1946], "tag_roof_storeys": [0.5, 1.5],
-         "tag_heritage": [], "tag_shop": [], "tag_number": [0.5], "position": [1.5, 2.5, 3.5, 4.5, 5.5],
+         "tag_heritage": [1.5], "tag_shop": [], "tag_number": [0.5], "position": [1.5, 2.5, 3.5, 4.5, 5.5],
          # Where docs/style_measures.md 3.3 and 1.2 see the borders of morphologies: quantiles of the data cut elsewhere.
          "around_area": [60, 80, 110, 160, 230, 300, 480, 800], "around_frontage": [7.5, 9.5, 12, 15, 20, 24],
          "around_count": [10, 20, 30, 42, 60], "around_party_share": [0.06, 0.12, 0.22, 0.4, 0.55],
@@ -33,6 +33,15 @@ EDGES = {"tag_roof": [1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5], "tag_use": [v + 0.5 fo
          "around_depth": [8, 10, 12, 14, 16], "row_breadth": [9, 11, 13, 16, 20], "row_length": [15, 30, 60, 100],
          "setback": [0.25, 1, 3, 8], "rectangularity": [0.7, 0.84, 0.94, 0.99], "row_fill": [0.5, 0.7, 0.85, 0.97], "row_alike": [0.25, 0.75],
          "street_class": [4.5, 5.5, 6.5, 7.5], "yards": [0.5, 1.5], "neighbours": [0.5, 1.5, 2.5]}
+
+
+ITERATIONS = 100  # of the fit; the last fifty change no weight by 0.01
+MOST = 1500  # houses of one town that are looked at for dates, storeys and roofs: more of the same town teach nothing of the next
+
+
+def spread(rows):
+    """At most MOST of them, evenly."""
+    return rows if len(rows) <= MOST else rows[np.linspace(0, len(rows) - 1, MOST).astype(int)]
 
 
 class Model:
@@ -91,7 +100,7 @@ class Model:
             np.add.at(G, left, -4 * self.smooth * l2 * D)
             return value, np.r_[R.sum(0), G.ravel()]
 
-        p = minimize(loss, np.zeros(k + m * k), jac=True, method="L-BFGS-B", options={"maxiter": 200}).x
+        p = minimize(loss, np.zeros(k + m * k), jac=True, method="L-BFGS-B", options={"maxiter": ITERATIONS}).x
         self.prior, self.T = p[:k], p[k:].reshape(m, k)
         # Only differences between answers count.
         self.prior = self.prior - self.prior.mean()
@@ -133,7 +142,7 @@ def quoted(a):
 # (issue 8): a date decides between the times, a church is `other` whenever it was built. Log-odds in the order of STYLES.
 BY_HAND = {("style", "tag_year"): {0: (-1.5, -1.5, -2.5, 2.5), 1: (1.0, 1.0, -3.0, 0.0), 2: (-2.5, -2.5, 2.5, -0.5), 3: (-3.0, -3.0, 3.0, -1.0)},
            ("style", "tag_use"): {5: (-2.0, -1.0, -1.0, 3.0), 8: (-1.0, 0.0, 0.0, 1.0), 9: (-2.0, -3.0, -1.5, 5.0)},
-           ("style", "tag_heritage"): {0: (0.3, 0.0, -0.7, 0.4)}}
+           ("style", "tag_heritage"): {0: (0.0, 0.0, 0.0, 0.0), 1: (0.3, 0.0, -0.7, 0.4)}}
 
 
 def set_by_hand(name, model):
@@ -160,6 +169,7 @@ def left_out(place, leave):
 
 def fit_all(tables, shared, leave=(), labels=None, areas=None, only=None):
     """The five models without the places of `leave`: names of extracts, cities, label places, or areas."""
+    leave = set(leave)
     labels = common.read_labels() if labels is None else labels
     areas = common.read_areas(shared, tables) if areas is None else areas
     all_features = next(iter(tables.values())).features
@@ -184,19 +194,21 @@ def fit_all(tables, shared, leave=(), labels=None, areas=None, only=None):
     rows = [r for r in labelled(tables, labels, "style", STYLES) if used(r[3])]
     train("style", geometry + sorted(TAGS), STYLES, rows, bins=6, l2=1.0)
 
-    # Era: labels, dates, and a little of the circles.
-    rows = [(x, y, w, r) for x, y, w, r in labelled(tables, labels, "era", ERAS) if used(r)]
-    rows = [(x, y, w * 0.7) for x, y, w, _ in rows]
+    # Era: dates of houses, each town with the same weight, those outside the regions with half of it. Labels made by hand and
+    # circles are left out: they show what was looked for (quarters of the 1920s had two fifths of the weight), not how many there are.
+    rows = []
+    by_town = {}
     for place, t in tables.items():
         if left_out(place, leave):
             continue
         years, sure = t.number("year"), t.number("year_confidence")
-        for i in np.where(~np.isnan(years) & (sure > 0.5) & (t.feature("area") >= 40))[0]:
-            rows.append((t.X[i], era_of(years[i]), 1.0))
-    for name, place, kind, houses in areas:
-        if not left_out(place, leave) and name not in leave and kind in common.AREA_ERA:
-            rows += [(t_x, ERAS.index(common.AREA_ERA[kind]), 20.0 / len(houses)) for t_x in tables[place].X[houses]]
-    train("era", [f for f in geometry] + ["tag_roof", "tag_roof_storeys", "tag_storeys", "tag_use"], ERAS, rows, bins=6, l2=1.0)
+        named = np.array(t.text("t_building:architecture")) != ""
+        for i in spread(np.where(~np.isnan(years) & (sure > 0.5) & (t.feature("area") >= 10) & ~named)[0]):
+            by_town.setdefault(common.city(place), []).append((t.X[i], era_of(years[i]), 0.5 if place in common.OUTSIDE else 1.0))
+    few = [r for town in by_town.values() if len(town) < FEW for r in town]  # small ones together are one town
+    for town in [t for t in by_town.values() if len(t) >= FEW] + [few]:
+        rows += [(x, e, w / len(town)) for x, e, w in town]
+    train("era", geometry + ["tag_heritage", "tag_number", "tag_shop", "tag_use"], ERAS, rows, bins=6, l2=6.0)
 
     # Morphology: the circles, each class with the same weight.
     rows = []
@@ -213,16 +225,17 @@ def fit_all(tables, shared, leave=(), labels=None, areas=None, only=None):
     for name, answers in (("storeys", [str(s) for s in STOREYS]), ("roof", ROOFS)):
         rows = []
         for place, t in tables.items():
-            if left_out(place, leave):
+            if left_out(place, leave) or place in common.OUTSIDE:
                 continue
             told = t.number("storeys") if name == "storeys" else np.array([math.nan if s == "" else 1 for s in t.text("roof_shape")])
-            chosen = np.where(~np.isnan(told) & (told > 0))[0]
+            chosen = spread(np.where(~np.isnan(told) & (told > 0))[0])
             shapes = t.text("roof_shape")
             for i in chosen:
                 y = int(np.argmin([abs(s - told[i]) for s in STOREYS])) if name == "storeys" else ROOFS.index(common.family(shapes[i]))
                 rows.append((t.X[i], y, len(chosen) ** -0.5))
-        asked = geometry + (["tag_use", "tag_roof", "tag_number"] if name == "storeys" else ["tag_use", "tag_storeys", "tag_number"])
-        train(name, asked, answers, rows, bins=6, l2=0.3)
+        asked = geometry + (["tag_use", "tag_roof", "tag_number", "tag_heritage", "tag_shop"] if name == "storeys"
+                            else ["tag_use", "tag_storeys", "tag_number", "tag_heritage"])
+        train(name, asked, answers, rows, bins=6, l2=1.0)
     return models
 
 
@@ -258,13 +271,16 @@ def hand_score(feature_index, each=100):
     return rows
 
 
+FEW = 30  # dates
+
+
 def era_of(year):
     return 0 if year < 1840 else 1 if year < 1919 else 2 if year < 1946 else 3
 
 
 TITLES = {
     "style": ["Which class of appearance: log-odds per feature and bin.", "Fitted on tests/bench/classify/labels.csv (labelled by hand)."],
-    "era": ["When it was built.", "Fitted on mapped dates, hand-made labels and, with little weight, the circles of labels/areas.csv."],
+    "era": ["When it was built.", "Fitted on mapped dates, each town with the same weight."],
     "morphology": ["How the houses of the quarter stand (references/styles.md 3.3).", "Fitted on the circles of labels/areas.csv."],
     "storeys": ["Full storeys, where neighbours do not tell.", "Fitted on tagged storeys."],
     "roof": ["Family of the roof's shape, where neighbours do not tell.", "Fitted on tagged roofs."]}

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include <cmath>
 
 #include "pipeline/base/error.h"
@@ -230,6 +232,45 @@ TEST_F(ShippedWeights, AChurchIsOtherWheneverItWasBuilt) {
 const Style& of(const Substyle& s) { return tables().catalogue[s.index]; }
 Substyle best(const SubstyleFacts& facts, const RegionPrior* region = nullptr) {
   return substyles(tables(), region, facts, 1).at(0);
+}
+
+TEST(Reconcile, EraAndClassNeverExcludeEachOther) {
+  std::uint32_t state = 4711;
+  const auto random = [&state] {
+    state = state * 1664525u + 1013904223u;
+    return static_cast<float>((state >> 8) % 1000 + 1);
+  };
+  const auto fill = [&random](auto& p) {
+    float sum = 0;
+    for (float& v : p) sum += v = random() * random() * random();
+    for (float& v : p) v /= sum;
+  };
+  for (int i = 0; i < 2000; ++i) {
+    model::BuildingStyle s;
+    fill(s.style), fill(s.era);
+    const model::BuildingStyle before = s;
+    reconcile(s, 0.3);
+    EXPECT_TRUE(agree(s.style_class(), s.built())) << i;
+    const auto sum = [](const auto& p) { return std::accumulate(p.begin(), p.end(), 0.f); };
+    EXPECT_NEAR(sum(s.style), 1, 1e-3f) << i;
+    EXPECT_NEAR(sum(s.era), 1, 1e-3f) << i;
+    for (const float v : s.style) EXPECT_GE(v, 0) << i;
+    reconcile(s = before, 0);
+    EXPECT_EQ(s.built(), before.built()) << i << ": the class has no say";
+  }
+}
+
+TEST(Reconcile, ADateDecidesWhatPlanAndRowCannot) {
+  model::BuildingStyle s;
+  s.style = {0.1f, 0.1f, 0.7f, 0.1f};
+  s.era = {0.02f, 0.95f, 0.02f, 0.01f};
+  reconcile(s, 0.3);
+  EXPECT_EQ(s.built(), model::Era::from1840);
+  EXPECT_NE(s.style_class(), StyleClass::modern);
+  s.style = {0.8f, 0.1f, 0.05f, 0.05f};
+  s.era = {0.95f, 0.03f, 0.01f, 0.01f};
+  reconcile(s, 0.3);
+  EXPECT_EQ(s.style_class(), StyleClass::other) << "a house of 1500 is no Gründerzeit";
 }
 
 TEST(Substyles, ShareTheProbabilityOfTheirClass) {

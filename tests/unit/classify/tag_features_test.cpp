@@ -55,10 +55,13 @@ TEST(TagFeatures, CountsAndFlagsAreTakenOver) {
   EXPECT_EQ(f[Feature::tag_roof_storeys], 1);
   EXPECT_EQ(f[Feature::tag_roof], 4) << "a mansard";
   EXPECT_EQ(f[Feature::tag_use], 1) << "flats";
-  EXPECT_EQ(f[Feature::tag_heritage], 1);
+  EXPECT_EQ(f[Feature::tag_heritage], 2);
   EXPECT_EQ(f[Feature::tag_shop], 1);
   EXPECT_EQ(f[Feature::tag_number], 1);
-  EXPECT_EQ(features({}, "yes", {{"historic", "building"}})[Feature::tag_heritage], 1);
+  EXPECT_EQ(features({}, "yes", {{"historic", "building"}})[Feature::tag_heritage], 2);
+  EXPECT_EQ(features({}, "yes", {{"ref:lda", "09065001"}})[Feature::tag_heritage], 2) << "a list of monuments";
+  EXPECT_EQ(features({}, "yes", {{"wikidata", "Q1"}})[Feature::tag_heritage], 1) << "known";
+  EXPECT_FALSE(features({}, "yes", {{"heritage", "no"}}).has(Feature::tag_heritage));
   EXPECT_EQ(features({}, "yes", {{"office", "lawyer"}})[Feature::tag_shop], 1);
   EXPECT_EQ(features({}, "yes", {{"amenity", "pub"}})[Feature::tag_shop], 1);
 }

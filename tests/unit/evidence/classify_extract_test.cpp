@@ -175,6 +175,19 @@ TEST(ClassifyExtract, TheSubstyleIsOfTheLikeliestClass) {
 }
 
 /// A town with something of everything.
+Row town();
+
+TEST(ClassifyExtract, EraClassAndSubstyleAreOneDecision) {
+  const Row row = town();
+  const StyleExtract s = row.classify();
+  for (std::size_t i = 0; i < 3000; ++i) {
+    const model::BuildingStyle& style = s.styles[i];
+    if (!row.facts.features[i].has(Feature::area) || style.non_house) continue;
+    EXPECT_TRUE(classify::agree(style.style_class(), style.built())) << i;
+    EXPECT_EQ(tables().catalogue[style.substyle].style_class, style.style_class()) << i;
+  }
+}
+
 Row town() {
   Row row(3000);
   std::uint32_t state = 12345;
