@@ -172,7 +172,9 @@ void Classifier::eras_and_styles() {
       }
       PerAnswer p = classify::probabilities(era, kEras);
       const Poll::Result votes = era_poll.ask(static_cast<std::uint32_t>(b), near);
-      if (votes.all > 0) p = classify::posterior(votes.votes, p, tables.era_votes, kEras);
+      // What is dated speaks for itself: infill has neighbours of another time.
+      const bool is_dated = options.dates && tags.dates[b].confidence > 0.5f;
+      if (votes.all > 0 && !is_dated) p = classify::posterior(votes.votes, p, tables.era_votes, kEras);
       if (options.dates && tags.dates[b].confidence > 0) {
         const auto middle = static_cast<std::int16_t>(tags.dates[b].year);
         const model::YearRange years = tags.years[b].value_or(model::YearRange{
@@ -298,12 +300,17 @@ void Classifier::reconcile_eras() {
   constexpr double kLeast = 1.0 / (1 << 17);  // half a step of probabilities
   for (std::size_t b = 0; b < n; ++b) {
     if (!known(b) || out.styles[b].non_house) continue;
-    const std::array<float, kStyles> before = out.styles[b].style;
     classify::reconcile(out.styles[b], tables.smoothing.era);
+    // From the probabilities themselves, so that all terms still add up; only differences between classes count.
+    PerAnswer sum{};
+    double shift = 0;
+    const auto features = [&](std::size_t c) { return alone_style[b][c] - out.region[b][c]; };  // what they alone say
+    for (std::size_t c = 0; c < kStyles; ++c) {
+      sum[c] = base::log(std::max(static_cast<double>(out.styles[b].style[c]), kLeast));
+      shift += (sum[c] - static_cast<double>(features(c) + out.elsewhere[b][c])) / kStyles;
+    }
     for (std::size_t c = 0; c < kStyles; ++c)
-      out.elsewhere[b][c] += static_cast<float>(
-          classify::round_log_odds(base::log(std::max(static_cast<double>(out.styles[b].style[c]), kLeast)) -
-                                   base::log(std::max(static_cast<double>(before[c]), kLeast))));
+      out.elsewhere[b][c] = static_cast<float>(classify::round_log_odds(sum[c] - shift)) - features(c);
   }
 }
 

@@ -202,10 +202,9 @@ void reconcile(model::BuildingStyle& style, double weight) {
   std::array<double, kEras> era{}, fits{};  // fits: what the classes that can be of an era have together
   double all = 0;
   for (std::size_t e = 0; e < kEras; ++e) {
-    double say = 0;
     for (std::size_t c = 0; c < kClasses; ++c)
-      if (can(c, e)) say += base::exp(weight * base::log(own[c])), fits[e] += own[c];
-    all += era[e] = std::max(static_cast<double>(style.era[e]), kLeast) * say;
+      if (can(c, e)) fits[e] += own[c];
+    all += era[e] = std::max(static_cast<double>(style.era[e]), kLeast) * base::exp(weight * base::log(fits[e]));
   }
   std::array<double, kClasses> p{};
   for (std::size_t e = 0; e < kEras; ++e) {
