@@ -28,6 +28,9 @@ constexpr std::size_t kStyles = model::kStyleClassCount, kEras = model::kEraCoun
 constexpr float kRuleSays = 0.97f;
 /// Years around the middle one that building:architecture stands for.
 constexpr int kStyleYears = 15;
+/// Years by which a date is later than the row around it and speaks for itself alone. A row of one building period was
+/// filled within four decades (1871 to 1914 at the most); what comes later is infill and tells nothing of its neighbours.
+constexpr int kInfillYears = 40;
 /// Confidence that votes may not exceed: neighbours are no tags.
 constexpr float kMostConfident = 0.9f;
 
@@ -138,6 +141,8 @@ struct Classifier {
 
   bool known(std::size_t b) const { return needed.has_style(b) && facts.features[b].has(Feature::area); }
 
+  PerAnswer own_era(std::size_t b) const;
+  bool is_infill(std::size_t b) const;
   void eras_and_styles();
   void quarters();
   void smooth_styles();
@@ -145,13 +150,44 @@ struct Classifier {
   void storeys_and_roofs();
 };
 
+/// What a building's own evidence and its region say of its era.
+PerAnswer Classifier::own_era(std::size_t b) const {
+  PerAnswer era = tables.era.log_odds(facts.features[b], options.tags);
+  const classify::RegionPrior* region = prior ? prior(static_cast<std::uint32_t>(b)) : nullptr;
+  if (region != nullptr && region->era) {
+    const PerAnswer add = classify::prior_log_odds(*region->era, tables.era);
+    for (std::size_t e = 0; e < kEras; ++e) era[e] += add[e];
+  }
+  return classify::probabilities(era, kEras);
+}
+
+/// Whether a dated house is much later than those that touch it on two sides and more: by their dates where they have
+/// one, else by their own evidence.
+bool Classifier::is_infill(std::size_t b) const {
+  const int before = static_cast<int>(tags.dates[b].year) - kInfillYears;
+  const Siting siting = classify::siting_of(facts.places[b].position);
+  double older = 0;
+  int around = 0;
+  for (const Contact& c : facts.contacts_of(static_cast<std::uint32_t>(b))) {
+    if (!facts.places[c.other].house || tags.non_house[c.other] >= 0 ||
+        classify::siting_of(facts.places[c.other].position) != siting)
+      continue;
+    ++around;
+    if (tags.dates[c.other].confidence > 0.5f)
+      older += tags.dates[c.other].year < static_cast<float>(before) ? 1 : 0;
+    else
+      older += classify::share_before(own_era(c.other), before);
+  }
+  return around >= 2 && older > 0.5 * around;
+}
+
 /// Era and style of each building alone, with dated neighbours.
 void Classifier::eras_and_styles() {
   alone_style.resize(n);
   std::vector<std::int16_t> dated(n, -1);
   if (options.dates)
     for (std::size_t b = 0; b < n; ++b)
-      if (tags.dates[b].confidence > 0.5f)
+      if (tags.dates[b].confidence > 0.5f && facts.features[b].has(Feature::area) && !is_infill(b))
         dated[b] = static_cast<std::int16_t>(model::era_of(static_cast<int>(tags.dates[b].year)));
   const Poll era_poll(facts, tables.era_votes, dated);
   in_runs(n, workers, [&](std::size_t first, std::size_t last) {
@@ -165,14 +201,9 @@ void Classifier::eras_and_styles() {
       s.non_house = tags.non_house[b] >= 0 &&
                     (options.tags || tags.reasons[static_cast<std::size_t>(tags.non_house[b])].by_geometry());
 
-      PerAnswer era = tables.era.log_odds(f, options.tags);
-      if (region != nullptr && region->era) {
-        const PerAnswer add = classify::prior_log_odds(*region->era, tables.era);
-        for (std::size_t e = 0; e < kEras; ++e) era[e] += add[e];
-      }
-      PerAnswer p = classify::probabilities(era, kEras);
+      PerAnswer p = own_era(b);
       const Poll::Result votes = era_poll.ask(static_cast<std::uint32_t>(b), near);
-      // What is dated speaks for itself: infill has neighbours of another time.
+      // What is dated speaks for itself.
       const bool is_dated = options.dates && tags.dates[b].confidence > 0.5f;
       if (votes.all > 0 && !is_dated) p = classify::posterior(votes.votes, p, tables.era_votes, kEras);
       if (options.dates && tags.dates[b].confidence > 0) {
@@ -300,7 +331,7 @@ void Classifier::reconcile_eras() {
   constexpr double kLeast = 1.0 / (1 << 17);  // half a step of probabilities
   for (std::size_t b = 0; b < n; ++b) {
     if (!known(b) || out.styles[b].non_house) continue;
-    classify::reconcile(out.styles[b], tables.smoothing.era);
+    classify::reconcile(out.styles[b], tables.smoothing.era, tables.smoothing.certain);
     // From the probabilities themselves, so that all terms still add up; only differences between classes count.
     PerAnswer sum{};
     double shift = 0;
@@ -542,7 +573,8 @@ Needed needed_for(std::span<const std::uint32_t> asked, const footprints::Footpr
     classified.push_back(b);
     if (context.block_of[b] != model::kNoIndex) blocks[context.block_of[b]] = 1;
   }
-  grow(needed.facts, classified, reach);
+  const std::vector<std::uint32_t> voters = grow(needed.facts, classified, reach);
+  grow(needed.facts, voters, kBeside);  // what a dated voter is compared with: Classifier::is_infill
   for (std::uint32_t b = 0; b < store.size(); ++b)
     if (context.block_of[b] != model::kNoIndex && blocks[context.block_of[b]]) needed.facts[b] = 1;
   return needed;

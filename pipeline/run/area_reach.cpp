@@ -75,6 +75,7 @@ class Reaches {
     for (int round = 0; round < std::max(1, tables.smoothing.rounds); ++round)
       touch(look, classify::kNearReach), touch(styled, classify::kNearReach);
     touch(look, heard);
+    touch(look, kBeside);  // dated voters are compared with what touches them (Classifier::is_infill)
     // Figures of its blocks count storeys.
     PlanCells blocks = mine;
     add_blocks(blocks);
@@ -86,6 +87,7 @@ class Reaches {
 
     PlanCells measured = styled;
     touch(measured, heard);
+    touch(measured, kBeside);
     add_blocks(styled);
     measured.include(styled);
     measured.include(blocks);

@@ -33,9 +33,11 @@ VoteKernel read_votes(base::TomlTable& file, const char* name) {
   return table ? VoteKernel::read(*table) : VoteKernel{};
 }
 
-/// Of a style's years that lie in one era; open ends count from 1500 and to 2030.
+/// Years of the four eras; open ends count from 1500 and to 2030.
+constexpr int kFrom[] = {1500, 1840, 1919, 1946}, kTo[] = {1839, 1918, 1945, 2030};
+
+/// Of a style's years that lie in one era.
 double share_in(model::YearRange years, int era) {
-  static constexpr int kFrom[] = {1500, 1840, 1919, 1946}, kTo[] = {1839, 1918, 1945, 2030};
   const int first = std::max<int>(years.from, kFrom[0]), last = std::min<int>(years.to, kTo[3]);
   const int from = std::max(first, kFrom[era]), to = std::min(last, kTo[era]);
   return to < from ? 0.0 : static_cast<double>(to - from + 1) / static_cast<double>(last - first + 1);
@@ -97,6 +99,7 @@ Tables Tables::read(const std::string& configs) {
     t.smoothing.certainty = s->number("certainty", 0.1, 1).value_or(t.smoothing.certainty);
     t.smoothing.doubt = s->number("doubt", 1e-4, 1).value_or(t.smoothing.doubt);
     t.smoothing.era = s->number("era", 0, 2).value_or(t.smoothing.era);
+    t.smoothing.certain = s->number("certain", 0.25, 2).value_or(t.smoothing.certain);
     s->finish();
   }
   file.finish();
@@ -190,10 +193,18 @@ PerAnswer era_of_years(model::YearRange years, double confidence) {
 
 bool occurs_in(model::YearRange years, model::Era era) { return share_in(years, static_cast<int>(era)) > 0; }
 
-void reconcile(model::BuildingStyle& style, double weight) {
+double share_before(const PerAnswer& eras, int year) {
+  double share = 0;
+  for (std::size_t e = 0; e < model::kEraCount; ++e)
+    share += eras[e] * std::clamp(static_cast<double>(year - kFrom[e]) / static_cast<double>(kTo[e] - kFrom[e] + 1), 0.0, 1.0);
+  return share;
+}
+
+void reconcile(model::BuildingStyle& style, double weight, double certain) {
   constexpr std::size_t kClasses = model::kStyleClassCount, kEras = model::kEraCount;
   constexpr double kLeast = 1e-4;    // nobody is that sure
   constexpr double kStep = 1 << 16;  // of probabilities, as in `probabilities`
+  constexpr double kOpen = 0.15;     // what a stated date (confidence 0.9) leaves to other eras is less: it decides
   const auto can = [](std::size_t c, std::size_t e) {
     return agree(static_cast<StyleClass>(c), static_cast<model::Era>(e));
   };
@@ -206,9 +217,27 @@ void reconcile(model::BuildingStyle& style, double weight) {
       if (can(c, e)) fits[e] += own[c];
     all += era[e] = std::max(static_cast<double>(style.era[e]), kLeast) * base::exp(weight * base::log(fits[e]));
   }
-  std::array<double, kClasses> p{};
+  // Gives one answer half of what another leads by, and a step more.
+  const auto lift = [kStep](double& best, double& other) {
+    if (other < best) return;
+    const double sum = best + other;
+    best = std::floor(sum / 2 * kStep) / kStep + 1 / kStep;
+    other = sum - best;
+  };
+  double open = 0;  // to the likeliest class
+  const std::size_t sure = static_cast<std::size_t>(std::max_element(own.begin(), own.end()) - own.begin());
+  std::size_t moved = kEras;
   for (std::size_t e = 0; e < kEras; ++e) {
     era[e] = std::floor(era[e] / all * kStep + 0.5) / kStep;
+    if (!can(sure, e)) continue;
+    open += static_cast<double>(style.era[e]);
+    if (moved == kEras || era[e] > era[moved]) moved = e;
+  }
+  if (own[sure] >= certain && open >= kOpen)
+    for (std::size_t e = 0; e < kEras; ++e)
+      if (e != moved) lift(era[moved], era[e]);
+  std::array<double, kClasses> p{};
+  for (std::size_t e = 0; e < kEras; ++e) {
     style.era[e] = static_cast<float>(era[e]);
     for (std::size_t c = 0; c < kClasses; ++c)
       if (can(c, e)) p[c] += era[e] * own[c] / fits[e];
@@ -220,12 +249,7 @@ void reconcile(model::BuildingStyle& style, double weight) {
   for (std::size_t c = 0; c < kClasses; ++c)
     if (can(c, built) && own[c] > own[best]) best = c;
   for (std::size_t c = 0; c < kClasses; ++c)
-    if (c != best && p[c] >= p[best]) {
-      const double half = std::floor((p[c] + p[best]) / 2 * kStep);
-      const double sum = p[c] + p[best];
-      p[best] = half / kStep + 1 / kStep;
-      p[c] = sum - p[best];
-    }
+    if (c != best) lift(p[best], p[c]);
   for (std::size_t c = 0; c < kClasses; ++c) style.style[c] = static_cast<float>(p[c]);
 }
 

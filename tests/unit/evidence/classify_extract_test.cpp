@@ -70,11 +70,12 @@ float p(const StyleExtract& s, std::size_t i, StyleClass c) { return s.styles[i]
 
 TEST(ClassifyExtract, SmoothingLeavesADatedHouseAmongOthers) {
   Row row(9);
-  row.date(3, 1890), row.date(5, 1890);  // else the one date would speak for the era of all
   row.date(4, 1963);
   const StyleExtract s = row.classify();
-  for (std::size_t i = 0; i < 9; ++i)
+  for (std::size_t i = 0; i < 9; ++i) {
     EXPECT_EQ(s.styles[i].style_class(), i == 4 ? StyleClass::modern : StyleClass::gruenderzeit) << i;
+    EXPECT_EQ(s.styles[i].built(), i == 4 ? Era::post1945 : Era::from1840) << i << ": infill speaks for itself alone";
+  }
   EXPECT_EQ(s.styles[4].built(), Era::post1945);
   EXPECT_EQ(s.styles[4].years, (model::YearRange{1963, 1963}));
 }
@@ -88,6 +89,23 @@ TEST(ClassifyExtract, AHouseWithoutADateFollowsDatedNeighbours) {
   const StyleExtract s = row.classify();
   EXPECT_EQ(s.styles[1].style_class(), StyleClass::modern);
   EXPECT_EQ(s.styles[1].built(), Era::post1945) << "dated neighbours vote";
+}
+
+TEST(ClassifyExtract, ADateSpeaksForARowOfItsTime) {
+  const auto infill = [](int own, int left, int right) {
+    Row row(7);
+    for (BuildingPlace& place : row.facts.places) place.position = BuildingPosition::mid_row;
+    row.date(3, own);
+    row.date(2, left), row.date(4, right);
+    Row without = row;
+    without.tags.dates[3] = {}, without.tags.years[3].reset();
+    without.facts.features[3][Feature::tag_year] = kUnknown;
+    return row.classify().styles[0].era == without.classify().styles[0].era;
+  };
+  EXPECT_TRUE(infill(1963, 1890, 1900)) << "both sides are older";
+  EXPECT_FALSE(infill(1963, 1890, 1961)) << "one side is of its time";
+  EXPECT_FALSE(infill(1925, 1890, 1900)) << "within a building period";
+  EXPECT_FALSE(infill(1890, 1963, 1961)) << "a survivor among later houses is no infill";
 }
 
 TEST(ClassifyExtract, ProbabilitiesFollowFromEvidenceAndWhatIsToldOfElsewhere) {
