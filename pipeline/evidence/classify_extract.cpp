@@ -331,7 +331,7 @@ void Classifier::reconcile_eras() {
   constexpr double kLeast = 1.0 / (1 << 17);  // half a step of probabilities
   for (std::size_t b = 0; b < n; ++b) {
     if (!known(b) || out.styles[b].non_house) continue;
-    classify::reconcile(out.styles[b], tables.smoothing.era, tables.smoothing.certain);
+    classify::reconcile(out.styles[b], tables.smoothing.era);
     // From the probabilities themselves, so that all terms still add up; only differences between classes count.
     PerAnswer sum{};
     double shift = 0;

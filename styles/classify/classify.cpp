@@ -99,7 +99,6 @@ Tables Tables::read(const std::string& configs) {
     t.smoothing.certainty = s->number("certainty", 0.1, 1).value_or(t.smoothing.certainty);
     t.smoothing.doubt = s->number("doubt", 1e-4, 1).value_or(t.smoothing.doubt);
     t.smoothing.era = s->number("era", 0, 2).value_or(t.smoothing.era);
-    t.smoothing.certain = s->number("certain", 0.25, 2).value_or(t.smoothing.certain);
     s->finish();
   }
   file.finish();
@@ -200,11 +199,10 @@ double share_before(const PerAnswer& eras, int year) {
   return share;
 }
 
-void reconcile(model::BuildingStyle& style, double weight, double certain) {
+void reconcile(model::BuildingStyle& style, double weight) {
   constexpr std::size_t kClasses = model::kStyleClassCount, kEras = model::kEraCount;
   constexpr double kLeast = 1e-4;    // nobody is that sure
   constexpr double kStep = 1 << 16;  // of probabilities, as in `probabilities`
-  constexpr double kOpen = 0.15;     // what a stated date (confidence 0.9) leaves to other eras is less: it decides
   const auto can = [](std::size_t c, std::size_t e) {
     return agree(static_cast<StyleClass>(c), static_cast<model::Era>(e));
   };
@@ -217,27 +215,9 @@ void reconcile(model::BuildingStyle& style, double weight, double certain) {
       if (can(c, e)) fits[e] += own[c];
     all += era[e] = std::max(static_cast<double>(style.era[e]), kLeast) * base::exp(weight * base::log(fits[e]));
   }
-  // Gives one answer half of what another leads by, and a step more.
-  const auto lift = [kStep](double& best, double& other) {
-    if (other < best) return;
-    const double sum = best + other;
-    best = std::floor(sum / 2 * kStep) / kStep + 1 / kStep;
-    other = sum - best;
-  };
-  double open = 0;  // to the likeliest class
-  const std::size_t sure = static_cast<std::size_t>(std::max_element(own.begin(), own.end()) - own.begin());
-  std::size_t moved = kEras;
-  for (std::size_t e = 0; e < kEras; ++e) {
-    era[e] = std::floor(era[e] / all * kStep + 0.5) / kStep;
-    if (!can(sure, e)) continue;
-    open += static_cast<double>(style.era[e]);
-    if (moved == kEras || era[e] > era[moved]) moved = e;
-  }
-  if (own[sure] >= certain && open >= kOpen)
-    for (std::size_t e = 0; e < kEras; ++e)
-      if (e != moved) lift(era[moved], era[e]);
   std::array<double, kClasses> p{};
   for (std::size_t e = 0; e < kEras; ++e) {
+    era[e] = std::floor(era[e] / all * kStep + 0.5) / kStep;
     style.era[e] = static_cast<float>(era[e]);
     for (std::size_t c = 0; c < kClasses; ++c)
       if (can(c, e)) p[c] += era[e] * own[c] / fits[e];
@@ -249,7 +229,12 @@ void reconcile(model::BuildingStyle& style, double weight, double certain) {
   for (std::size_t c = 0; c < kClasses; ++c)
     if (can(c, built) && own[c] > own[best]) best = c;
   for (std::size_t c = 0; c < kClasses; ++c)
-    if (c != best) lift(p[best], p[c]);
+    if (c != best && p[c] >= p[best]) {
+      const double half = std::floor((p[c] + p[best]) / 2 * kStep);
+      const double sum = p[c] + p[best];
+      p[best] = half / kStep + 1 / kStep;
+      p[c] = sum - p[best];
+    }
   for (std::size_t c = 0; c < kClasses; ++c) style.style[c] = static_cast<float>(p[c]);
 }
 

@@ -28,7 +28,6 @@ struct Smoothing {
   double certainty = 0.8;
   double doubt = 0.03;  ///< added to each probability: nobody is ever certain
   double era = 0.3;     ///< how much the style has a say in the era: power of its probabilities
-  double certain = 0.7;  ///< probability of the class from which it moves an era that is not sure; above 1: never
 };
 
 /// What may be assumed of a region before a building is looked at, by its district rules (`[prior]`).
@@ -101,10 +100,9 @@ constexpr bool agree(model::StyleClass c, model::Era era) {
   return true;
 }
 
-/// Makes era and class one decision: the class says `weight` of its log-odds to the era and, where it is `certain` and no
-/// date speaks against it, moves it; else the era has the last word. Then the classes that exclude the era share what is
-/// left to them by its being wrong.
-void reconcile(model::BuildingStyle& style, double weight, double certain);
+/// Makes era and class one decision: the era has the last word, the class says `weight` of its log-odds to it; then the
+/// classes that exclude the era share what is left to them by being wrong about it.
+void reconcile(model::BuildingStyle& style, double weight);
 
 /// Probability of having been built before a year, by those of the eras.
 double share_before(const PerAnswer& eras, int year);

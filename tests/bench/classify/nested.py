@@ -24,7 +24,7 @@ from common import STYLES
 
 # Runs: priors of [era] and [roof] move together (neither hears the other), then [style] with the shipped priors.
 PRIORS = [("0.3", "0.1"), ("0.5", "0.2"), ("1", "0.5"), ("2", "1")]
-DECISIONS = [("0.2", "0.7"), ("0.2", "2"), ("0.3", "0.7"), ("0.3", "0.8"), ("0.3", "2"), ("1", "2")]  # era, certain (2: never)
+DECISIONS = ["0.2", "0.3", "0.5", "1"]  # era
 
 
 def write_values(path, values):
@@ -111,7 +111,7 @@ def choose(title, values, measures):
 
 
 TITLES = {"prior of [era]": ["era, tenths", "era, this quarter hidden"], "prior of [roof]": ["roof family, tenths", "this quarter hidden"],
-          "era, certain of [style]": ["era, hidden", "era, tenths", "style, hidden", "style, tagged"]}
+          "era of [style]": ["era, hidden", "era, tenths", "style, hidden", "style, tagged"]}
 
 
 def main():
@@ -133,11 +133,10 @@ def main():
     choose("prior of [era]", [e for e, _ in PRIORS], era)
     choose("prior of [roof]", [r for _, r in PRIORS], roof)
     style = {}
-    for e, c in DECISIONS:
-        cities = answers(a, f"style-{e}-{c}", {("style", "era"): e, ("style", "certain"): c}, folds)
-        style[f"{e}, {c}"] = [right(cities, "era", "hidden"), right(cities, "era", "tenths"), style_right(cities, "hidden"),
-                              style_right(cities, "tagged")]
-    choose("era, certain of [style]", [f"{e}, {c}" for e, c in DECISIONS], style)
+    for e in DECISIONS:
+        cities = answers(a, f"style-{e}", {("style", "era"): e}, folds)
+        style[e] = [right(cities, "era", "hidden"), right(cities, "era", "tenths"), style_right(cities, "hidden"), style_right(cities, "tagged")]
+    choose("era of [style]", DECISIONS, style)
 
 
 if __name__ == "__main__":

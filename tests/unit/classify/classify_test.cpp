@@ -249,29 +249,15 @@ TEST(Reconcile, EraAndClassNeverExcludeEachOther) {
     model::BuildingStyle s;
     fill(s.style), fill(s.era);
     const model::BuildingStyle before = s;
-    reconcile(s, 0.3, 0.7);
+    reconcile(s, 0.3);
     EXPECT_TRUE(agree(s.style_class(), s.built())) << i;
     const auto sum = [](const auto& p) { return std::accumulate(p.begin(), p.end(), 0.f); };
     EXPECT_NEAR(sum(s.style), 1, 1e-3f) << i;
     EXPECT_NEAR(sum(s.era), 1, 1e-3f) << i;
     for (const float v : s.style) EXPECT_GE(v, 0) << i;
-    reconcile(s = before, 0, 2);
+    reconcile(s = before, 0);
     EXPECT_EQ(s.built(), before.built()) << i << ": the class has no say";
   }
-}
-
-TEST(Reconcile, ASureClassMovesAnUnsureEra) {
-  model::BuildingStyle s;
-  s.style = {0.08f, 0.03f, 0.88f, 0.01f};
-  s.era = {0.01f, 0.45f, 0.16f, 0.38f};  // the eras that it can be of have more together
-  reconcile(s, 0, 0.7);
-  EXPECT_EQ(s.style_class(), StyleClass::modern);
-  EXPECT_EQ(s.built(), model::Era::post1945);
-  s.style = {0.08f, 0.03f, 0.88f, 0.01f};
-  s.era = {0.01f, 0.92f, 0.03f, 0.04f};
-  reconcile(s, 0, 0.7);
-  EXPECT_EQ(s.built(), model::Era::from1840) << "a date";
-  EXPECT_EQ(s.style_class(), StyleClass::gruenderzeit);
 }
 
 TEST(ShareBefore, CountsYearsOfTheErasBefore) {
@@ -284,12 +270,12 @@ TEST(Reconcile, ADateDecidesWhatPlanAndRowCannot) {
   model::BuildingStyle s;
   s.style = {0.1f, 0.1f, 0.7f, 0.1f};
   s.era = {0.02f, 0.95f, 0.02f, 0.01f};
-  reconcile(s, 0.3, 0.7);
+  reconcile(s, 0.3);
   EXPECT_EQ(s.built(), model::Era::from1840);
   EXPECT_NE(s.style_class(), StyleClass::modern);
   s.style = {0.8f, 0.1f, 0.05f, 0.05f};
   s.era = {0.95f, 0.03f, 0.01f, 0.01f};
-  reconcile(s, 0.3, 0.7);
+  reconcile(s, 0.3);
   EXPECT_EQ(s.style_class(), StyleClass::other) << "a house of 1500 is no Gründerzeit";
 }
 
