@@ -201,7 +201,7 @@ std::string weights_text(const Json& style, const std::string& own, const std::s
                elsewhere = difference(style.at("elsewhere"), own, second);
   if (std::fabs(prior) >= kSeenWeight)
     text += weight_row(prior, "", "how frequent both are before anything is known of it");
-  text += weight_row(elsewhere, "", "what is usual in the region, the houses of its row and block, and its era");
+  text += weight_row(elsewhere, "", "what is usual in the region, its row, its block and its era");
   sum += prior + elsewhere;
   return text + weight_row(sum, "",
                            fmt::format("together: {} is {} as {}", sum < 0 ? second : own, odds_text(sum),

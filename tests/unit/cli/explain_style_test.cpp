@@ -90,8 +90,8 @@ TEST(ExplainStyle, WeightsAreThoseAgainstTheNextLikelyAndAddUp) {
             "    +0.35                   2 lighter ones together (--style lists them)");
   EXPECT_EQ(line_with(text, "before anything is known"),
             "    +0.20                   how frequent both are before anything is known of it");
-  EXPECT_EQ(line_with(text, "row and its block"),
-            "    +1.00                   what is usual in the region, the houses of its row and block, and its era");
+  EXPECT_EQ(line_with(text, "its row, its block"),
+            "    +1.00                   what is usual in the region, its row, its block and its era");
   // 1.84 + 0.6 - 0.4 + 4 x 0.25 + 0.1 + 0.2 + 1.0
   EXPECT_THAT(line_with(text, "together: gr"),
               AllOf(HasSubstr("+4.34"), HasSubstr("gruenderzeit is 77 times as likely as modern")));
