@@ -141,7 +141,7 @@ struct Classifier {
 
   bool known(std::size_t b) const { return needed.has_style(b) && facts.features[b].has(Feature::area); }
 
-  PerAnswer own_era(std::size_t b) const;
+  PerAnswer own_era(std::size_t b, const FeatureVector& f) const;
   bool is_infill(std::size_t b) const;
   void eras_and_styles();
   void quarters();
@@ -151,14 +151,24 @@ struct Classifier {
 };
 
 /// What a building's own evidence and its region say of its era.
-PerAnswer Classifier::own_era(std::size_t b) const {
-  PerAnswer era = tables.era.log_odds(facts.features[b], options.tags);
+PerAnswer Classifier::own_era(std::size_t b, const FeatureVector& f) const {
+  PerAnswer era = tables.era.log_odds(f, options.tags);
   const classify::RegionPrior* region = prior ? prior(static_cast<std::uint32_t>(b)) : nullptr;
   if (region != nullptr && region->era) {
     const PerAnswer add = classify::prior_log_odds(*region->era, tables.era);
     for (std::size_t e = 0; e < kEras; ++e) era[e] += add[e];
   }
   return classify::probabilities(era, kEras);
+}
+
+/// What is known of a building wherever an area ends: without what it shares with its row, its block and what stands around.
+FeatureVector alone(const FeatureVector& f) {
+  FeatureVector out;
+  for (std::size_t i = 0; i < classify::kFeatureCount; ++i)
+    if (const std::string_view group = classify::kFeatures[i].group;
+        group == "footprint" || group == "situation" || group == "tag")
+      out[static_cast<Feature>(i)] = f[static_cast<Feature>(i)];
+  return out;
 }
 
 /// Whether a dated house is much later than those that touch it on two sides and more: by their dates where they have
@@ -176,7 +186,7 @@ bool Classifier::is_infill(std::size_t b) const {
     if (tags.dates[c.other].confidence > 0.5f)
       older += tags.dates[c.other].year < static_cast<float>(before) ? 1 : 0;
     else
-      older += classify::share_before(own_era(c.other), before);
+      older += classify::share_before(own_era(c.other, alone(facts.features[c.other])), before);
   }
   return around >= 2 && older > 0.5 * around;
 }
@@ -201,7 +211,7 @@ void Classifier::eras_and_styles() {
       s.non_house = tags.non_house[b] >= 0 &&
                     (options.tags || tags.reasons[static_cast<std::size_t>(tags.non_house[b])].by_geometry());
 
-      PerAnswer p = own_era(b);
+      PerAnswer p = own_era(b, f);
       const Poll::Result votes = era_poll.ask(static_cast<std::uint32_t>(b), near);
       // What is dated speaks for itself.
       const bool is_dated = options.dates && tags.dates[b].confidence > 0.5f;
