@@ -138,6 +138,7 @@ struct Classifier {
   std::size_t n = facts.features.size();
   StyleExtract out{};
   std::vector<std::array<float, kStyles>> alone_style{};  ///< log-odds of each building's style by itself
+  std::vector<std::int16_t> dated{};                      ///< era of those whose dates speak for others, or -1
 
   bool known(std::size_t b) const { return needed.has_style(b) && facts.features[b].has(Feature::area); }
 
@@ -147,6 +148,7 @@ struct Classifier {
   void quarters();
   void smooth_styles();
   void reconcile_eras();
+  void years();
   void storeys_and_roofs();
 };
 
@@ -194,7 +196,7 @@ bool Classifier::is_infill(std::size_t b) const {
 /// Era and style of each building alone, with dated neighbours.
 void Classifier::eras_and_styles() {
   alone_style.resize(n);
-  std::vector<std::int16_t> dated(n, -1);
+  dated.assign(n, -1);
   if (options.dates)
     for (std::size_t b = 0; b < n; ++b)
       if (tags.dates[b].confidence > 0.5f && facts.features[b].has(Feature::area) && !is_infill(b))
@@ -215,7 +217,11 @@ void Classifier::eras_and_styles() {
       const Poll::Result votes = era_poll.ask(static_cast<std::uint32_t>(b), near);
       // What is dated speaks for itself.
       const bool is_dated = options.dates && tags.dates[b].confidence > 0.5f;
-      if (votes.all > 0 && !is_dated) p = classify::posterior(votes.votes, p, tables.era_votes, kEras);
+      if (votes.all > 0 && !is_dated) {
+        p = classify::posterior(votes.votes, p, tables.era_votes, kEras);
+        out.dates[b].votes = static_cast<float>(votes.all);
+        out.dates[b].voters = votes.voters;
+      }
       if (options.dates && tags.dates[b].confidence > 0) {
         const auto middle = static_cast<std::int16_t>(tags.dates[b].year);
         const model::YearRange years = tags.years[b].value_or(model::YearRange{
@@ -341,7 +347,9 @@ void Classifier::reconcile_eras() {
   constexpr double kLeast = 1.0 / (1 << 17);  // half a step of probabilities
   for (std::size_t b = 0; b < n; ++b) {
     if (!known(b) || out.styles[b].non_house) continue;
-    classify::reconcile(out.styles[b], tables.smoothing.era);
+    // The class is evidence of its own: of the era it says as much as that is heard beside dated neighbours.
+    const double heard = tables.era_votes.prior / (tables.era_votes.prior + static_cast<double>(out.dates[b].votes));
+    classify::reconcile(out.styles[b], tables.smoothing.era * heard, tables.style.base());
     // From the probabilities themselves, so that all terms still add up; only differences between classes count.
     PerAnswer sum{};
     double shift = 0;
@@ -353,6 +361,45 @@ void Classifier::reconcile_eras() {
     for (std::size_t c = 0; c < kStyles; ++c)
       out.elsewhere[b][c] = static_cast<float>(classify::round_log_odds(sum[c] - shift)) - features(c);
   }
+}
+
+/// Years of those that dated neighbours of their era give one.
+void Classifier::years() {
+  const Poll poll(facts, tables.era_votes, dated);
+  in_runs(n, workers, [&](std::size_t first, std::size_t last) {
+    std::vector<std::uint32_t> near;
+    for (std::size_t b = first; b < last; ++b) {
+      DateEstimate& date = out.dates[b];
+      if (!known(b) || date.voters == 0) continue;
+      const model::Era era = out.styles[b].built();
+      std::vector<std::pair<int, double>> heard;  // year, weight
+      poll.ask(static_cast<std::uint32_t>(b), near, [&](std::uint32_t voter, double weight) {
+        const int year = static_cast<int>(tags.dates[voter].year);
+        if (model::era_of(year) == era) heard.emplace_back(year, weight);
+      });
+      if (heard.empty()) continue;
+      std::ranges::sort(heard);
+      double all = 0;
+      for (const auto& [year, weight] : heard) all += weight;
+      const auto year_at = [&](double share) {
+        double sum = 0;
+        for (const auto& [year, weight] : heard)
+          if ((sum += weight) >= share * all) return year;
+        return heard.back().first;
+      };
+      const int middle = year_at(0.5);
+      int from = std::min(year_at(0.25), middle - kLeastYears), to = std::max(year_at(0.75), middle + kLeastYears);
+      while (model::era_of(from) != era) ++from;  // by kLeastYears at most
+      while (model::era_of(to) != era) --to;
+      date.year = static_cast<std::int16_t>(middle);
+      date.from = static_cast<std::int16_t>(from), date.to = static_cast<std::int16_t>(to);
+      double between = 0;
+      for (const auto& [year, weight] : heard)
+        if (year >= date.from && year <= date.to) between += weight;
+      date.confidence =
+          std::min(kMostConfident, out.styles[b].era[static_cast<std::size_t>(era)] * static_cast<float>(between / all));
+    }
+  });
 }
 
 /// Storeys, sub-style, roof.
@@ -404,6 +451,8 @@ void Classifier::storeys_and_roofs() {
       sub.storeys = told == told ? static_cast<double>(told) : tables.storey_counts[chosen];
       sub.roof = tags.roofs[b];
       sub.year = options.dates ? static_cast<double>(tags.dates[b].year) : 0;
+      if (sub.year <= 0 && out.dates[b].year > 0)
+        sub.year = out.dates[b].year, sub.year_says = static_cast<double>(out.dates[b].confidence);
       sub.area = static_cast<double>(f[Feature::area]);
       if (f.has(Feature::neighbours)) sub.neighbours = static_cast<int>(f[Feature::neighbours]);
       sub.use = f.has(Feature::tag_use) ? static_cast<int>(f[Feature::tag_use]) : 0;
@@ -605,6 +654,7 @@ StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, c
   out.styles.resize(classifier.n);
   out.storeys.resize(classifier.n);
   out.roofs.resize(classifier.n);
+  out.dates.resize(classifier.n);
   out.elsewhere.assign(classifier.n, {});
   out.region.assign(classifier.n, {});
   classifier.eras_and_styles();
@@ -614,6 +664,7 @@ StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, c
   if (options.smooth) classifier.smooth_styles();
   progress.advance_to(3);
   classifier.reconcile_eras();
+  classifier.years();
   classifier.storeys_and_roofs();
   return std::move(out);
 }

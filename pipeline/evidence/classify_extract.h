@@ -34,11 +34,23 @@ struct RoofEstimate {
   classify::RoofFamily own = classify::RoofFamily::flat;  ///< what the building's own evidence alone would say
 };
 
+/// When a house was built whose date nothing tells, by dated neighbours of its era. Years are whole; 0: there are none.
+struct DateEstimate {
+  std::int16_t year = 0;          ///< their middle one, each with the weight of its vote
+  std::int16_t from = 0, to = 0;  ///< the middle half of them, and kLeastYears at least, within the era
+  float confidence = 0;           ///< probability of the era x share of the votes that lie between
+  float votes = 0;                ///< weight of all dated neighbours, of whatever era
+  std::uint16_t voters = 0;
+};
+/// Years to each side of the middle one that an estimate leaves open at least: a row was built in some years, not in one.
+inline constexpr int kLeastYears = 5;
+
 /// Read-only once made, safe to share between threads. Numbers of buildings are those of the FootprintStore.
 struct StyleExtract {
   std::vector<model::BuildingStyle> styles;
   std::vector<StoreysEstimate> storeys;
   std::vector<RoofEstimate> roofs;
+  std::vector<DateEstimate> dates;
   /// Log-odds of the style that do not come from the building's own features: region and neighbours, less what
   /// neighbours only say again (Smoothing::certainty).
   std::vector<std::array<float, model::kStyleClassCount>> elsewhere;

@@ -116,8 +116,7 @@ std::string years_text(model::YearRange years) {
 
 /// The years that an era and a sub-style have in common; those of the era where they have none.
 model::YearRange years_of(model::Era era, const classify::Style& style) {
-  static constexpr model::YearRange kYears[] = {{1500, 1839}, {1840, 1918}, {1919, 1945}, {1946, 2030}};
-  const model::YearRange own = kYears[static_cast<std::size_t>(era)];
+  const model::YearRange own = classify::years_of(era);
   const model::YearRange both{std::max(own.from, style.years.from), std::min(own.to, style.years.to)};
   return both.from <= both.to ? both : own;
 }
@@ -167,13 +166,24 @@ void put_style_attributes(model::Region& region, std::span<const std::uint32_t> 
       if (told)
         put(a.construction_date, years_text(told->years), Source::tag, told->confidence,
             told->confidence < 0.5f ? "tagged, but perhaps the date of the shop or office in it" : "tagged", {});
+      else if (const DateEstimate& date = in.styles.dates[number]; date.year > 0)
+        put(a.construction_date, years_text({date.from, date.to}), Source::neighbours, date.confidence,
+            fmt::format("{} dated {} within {:.0f} m; of those of the era the middle one is of {}", date.voters,
+                        date.voters == 1 ? "neighbour" : "neighbours", in.tables.era_votes.reach, date.year),
+            {});
       else
         put(a.construction_date, years_text(years_of(s.built(), style)), Source::geometry, s.era[era] * s.substyle_p,
             fmt::format("years of {} within {}", style.id, model::kEraNames[era]), {});
-      const Source era_source = date_confidence >= 0.5f ? Source::implied : Source::geometry;
+      const DateEstimate& heard = in.styles.dates[number];
+      const bool neighbours = static_cast<double>(heard.votes) > in.tables.era_votes.prior;
+      const Source era_source = date_confidence >= 0.5f ? Source::implied
+                                : neighbours            ? Source::neighbours
+                                                        : Source::geometry;
       put(a.era, std::string(model::kEraNames[era]), era_source, s.era[era],
           era_source == Source::implied ? "by what is tagged of its date or architecture"
-                                        : "plan, quarter, neighbours and what is tagged of its storeys and roof",
+          : neighbours ? fmt::format("{} dated {} within {:.0f} m, the nearer the louder", heard.voters,
+                                     heard.voters == 1 ? "neighbour" : "neighbours", in.tables.era_votes.reach)
+                       : "plan, quarter, neighbours and what is tagged of its storeys and roof",
           others(s.era, model::kEraNames, era, era_source));
       const std::size_t won = static_cast<std::size_t>(s.style_class());
       put(a.style, std::string(model::kStyleClassNames[won]), found, s.style[won],

@@ -105,8 +105,8 @@ struct TileKeys::Impl {
       const classify::NonHouse& reason = s.tags.reasons[static_cast<std::size_t>(why)];
       out << reason.why;
     }
-    out << s.styles.styles[number] << s.styles.storeys[number] << s.styles.roofs[number] << s.styles.elsewhere[number]
-        << s.styles.region[number];
+    out << s.styles.styles[number] << s.styles.storeys[number] << s.styles.roofs[number] << s.styles.dates[number]
+        << s.styles.elsewhere[number] << s.styles.region[number];
   }
 
   /// For the position that was measured: a tile that finds another one is not kept (positions_as_measured).

@@ -192,6 +192,11 @@ PerAnswer era_of_years(model::YearRange years, double confidence) {
 
 bool occurs_in(model::YearRange years, model::Era era) { return share_in(years, static_cast<int>(era)) > 0; }
 
+model::YearRange years_of(model::Era era) {
+  const auto e = static_cast<std::size_t>(era);
+  return {static_cast<std::int16_t>(kFrom[e]), static_cast<std::int16_t>(kTo[e])};
+}
+
 double share_before(const PerAnswer& eras, int year) {
   double share = 0;
   for (std::size_t e = 0; e < model::kEraCount; ++e)
@@ -199,7 +204,7 @@ double share_before(const PerAnswer& eras, int year) {
   return share;
 }
 
-void reconcile(model::BuildingStyle& style, double weight) {
+void reconcile(model::BuildingStyle& style, double weight, const PerAnswer& usual) {
   constexpr std::size_t kClasses = model::kStyleClassCount, kEras = model::kEraCount;
   constexpr double kLeast = 1e-4;    // nobody is that sure
   constexpr double kStep = 1 << 16;  // of probabilities, as in `probabilities`
@@ -211,9 +216,11 @@ void reconcile(model::BuildingStyle& style, double weight) {
   std::array<double, kEras> era{}, fits{};  // fits: what the classes that can be of an era have together
   double all = 0;
   for (std::size_t e = 0; e < kEras; ++e) {
+    double usually = 0;
     for (std::size_t c = 0; c < kClasses; ++c)
-      if (can(c, e)) fits[e] += own[c];
-    all += era[e] = std::max(static_cast<double>(style.era[e]), kLeast) * base::exp(weight * base::log(fits[e]));
+      if (can(c, e)) fits[e] += own[c], usually += usual[c];
+    const double says = fits[e] / (usually > 0 ? usually : 1);
+    all += era[e] = std::max(static_cast<double>(style.era[e]), kLeast) * base::exp(weight * base::log(says));
   }
   std::array<double, kClasses> p{};
   for (std::size_t e = 0; e < kEras; ++e) {
@@ -255,7 +262,8 @@ std::vector<Substyle> substyles(const Tables& tables, const RegionPrior* region,
         era += static_cast<double>(style.era[static_cast<std::size_t>(e)]) * share_in(s.years, e);
       w *= era + kRare;
       if (facts.year > 0)
-        w *= base::exp(facts.year >= s.years.from && facts.year <= s.years.to ? kYearFits : -kYearFits);
+        w *= base::exp(facts.year_says *
+                       (facts.year >= s.years.from && facts.year <= s.years.to ? kYearFits : -kYearFits));
       if (tables.attached[index] && facts.neighbours == 0) w *= kWrongPlace;
       if (tables.use_of_style[index] == 1 << kOutbuildingUse && facts.area >= kSmallestHouse) w *= kRare;
       const bool behind = s.position == StylePosition::rear || s.position == StylePosition::wing;

@@ -102,7 +102,12 @@ constexpr bool agree(model::StyleClass c, model::Era era) {
 
 /// Makes era and class one decision: the era has the last word, the class says `weight` of its log-odds to it; then the
 /// classes that exclude the era share what is left to them by being wrong about it.
-void reconcile(model::BuildingStyle& style, double weight);
+/// \param usual  shares of the classes where the model learnt them: an era that three classes can be of is not likelier for that alone
+///               (what a class says is its probability over its usual share); all 0: not known
+void reconcile(model::BuildingStyle& style, double weight, const PerAnswer& usual = {});
+
+/// The years of an era; of the first one from 1500, of the last one to 2030.
+model::YearRange years_of(model::Era era);
 
 /// Probability of having been built before a year, by those of the eras.
 double share_before(const PerAnswer& eras, int year);
@@ -123,6 +128,7 @@ struct SubstyleFacts {
   double storeys = 0;                         ///< 0: unknown
   std::optional<model::RoofShape> roof = {};  ///< as tagged
   double year = 0;                            ///< 0: unknown
+  double year_says = 1;                       ///< of what a tagged year would say
   double area = 0;                            ///< m²; 0: unknown
   int neighbours = -1;                        ///< houses that touch it; -1: unknown
   int use = 0;                                ///< Feature::tag_use

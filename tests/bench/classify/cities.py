@@ -94,7 +94,9 @@ class City:
                  "roof": np.array([ROOFS.index(r) for r in text(f"{c}_roof")]), "roof_p": number(f"{c}_roof_p"),
                  "substyle": text(f"{c}_substyle"), "non_house": number(f"{c}_non_house") > 0}
             if f"{c}_year" in parts[0][0].column:
-                a["year"] = number(f"{c}_year")
+                own = np.array([middle(catalogue[s], e) for s, e in zip(a["substyle"], a["era"].argmax(1))])
+                told = number(f"{c}_year")
+                a["year"] = np.where(told > 0, told, own)
             else:
                 a["year"] = np.array([middle(catalogue[s], e) for s, e in zip(a["substyle"], a["era"].argmax(1))])
             self.answers[c] = a

@@ -245,6 +245,7 @@ void write_table(const std::string& input, const std::string& configs, const std
           c.tenths.styles[b] = r.styles[b];
           c.tenths.storeys[b] = r.storeys[b];
           c.tenths.roofs[b] = r.roofs[b];
+          c.tenths.dates[b] = r.dates[b];
         },
         again);
     evidence::FactsExtract f = facts;
@@ -284,7 +285,7 @@ void write_table(const std::string& input, const std::string& configs, const std
       for (const auto name : model::kEraNames) head += fmt::format(",{}_era_{}", set, name);
       for (const auto name : model::kMorphologyNames) head += fmt::format(",{}_morphology_{}", set, name);
       for (const char* name :
-           {"substyle", "substyle_p", "non_house", "storeys", "storeys_p", "storeys_within", "roof", "roof_p"})
+           {"substyle", "substyle_p", "non_house", "storeys", "storeys_p", "storeys_within", "roof", "roof_p", "year"})
         head += fmt::format(",{}_{}", set, name);
     }
   }
@@ -344,7 +345,8 @@ void write_table(const std::string& input, const std::string& configs, const std
           const evidence::RoofEstimate& roof = set->roofs[b];
           row += fmt::format(",{},{:.3f},{},{:g},{:.3f},{:.3f},{},{:.3f}", tables.catalogue[s.substyle].id,
                              s.substyle_p, s.non_house ? 1 : 0, storeys.storeys, storeys.confidence, storeys.within_one,
-                             classify::name(classify::family_of(roof.shape)), roof.confidence);
+                             classify::name(classify::family_of(roof.shape)), roof.confidence) +
+                 fmt::format(",{}", set->dates[b].year);
         }
       }
       out.print("{}\n", row);

@@ -279,6 +279,18 @@ TEST(Reconcile, ADateDecidesWhatPlanAndRowCannot) {
   EXPECT_EQ(s.style_class(), StyleClass::other) << "a house of 1500 is no Gründerzeit";
 }
 
+TEST(Reconcile, AClassAsLikelyAsUsualSaysNothingOfTheEra) {
+  const PerAnswer usual{0.3, 0.1, 0.4, 0.2};
+  model::BuildingStyle s;
+  s.style = {0.3f, 0.1f, 0.4f, 0.2f};
+  s.era = {0.1f, 0.35f, 0.15f, 0.4f};
+  const model::BuildingStyle before = s;
+  reconcile(s, 1, usual);
+  for (std::size_t e = 0; e < s.era.size(); ++e) EXPECT_NEAR(s.era[e], before.era[e], 1e-4f) << e;
+  reconcile(s = before, 1);
+  EXPECT_GT(s.era[1], before.era[1] + 0.02f) << "three of the classes can be of it";
+}
+
 TEST(Substyles, ShareTheProbabilityOfTheirClass) {
   model::BuildingStyle s = style(StyleClass::gruenderzeit, Era::from1840, Morphology::perimeter_block);
   s.style = {0.5f, 0.25f, 0.25f, 0};

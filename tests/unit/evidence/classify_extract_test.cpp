@@ -91,6 +91,46 @@ TEST(ClassifyExtract, AHouseWithoutADateFollowsDatedNeighbours) {
   EXPECT_EQ(s.styles[1].built(), Era::post1945) << "dated neighbours vote";
 }
 
+TEST(ClassifyExtract, DatedNeighboursOfItsEraTellTheYearsOfAHouse) {
+  Row row(9);
+  row.date(0, 1887), row.date(1, 1890), row.date(3, 1894), row.date(5, 1908);
+  const StyleExtract s = row.classify();
+  EXPECT_EQ(s.dates[1].voters, 0) << "it has a date of its own";
+  EXPECT_EQ(s.dates[1].year, 0);
+  const DateEstimate& d = s.dates[2];
+  EXPECT_EQ(d.voters, 4);
+  EXPECT_GE(d.year, 1890) << "those that touch it are loudest";
+  EXPECT_LE(d.year, 1894);
+  EXPECT_LE(d.from, d.year - kLeastYears);
+  EXPECT_GE(d.to, d.year + kLeastYears);
+  EXPECT_LT(d.to, 1908) << "the one far off is not among the middle half";
+  EXPECT_GT(d.confidence, 0.5f);
+  EXPECT_EQ(row.classify({.dates = false}).dates[2].year, 0);
+
+  Row edge(3);
+  edge.date(0, 1917), edge.date(2, 1918);
+  const StyleExtract at_edge = edge.classify();
+  EXPECT_EQ(at_edge.styles[1].built(), Era::from1840);
+  EXPECT_EQ(at_edge.dates[1].to, 1918) << "within the era";
+  Row old(3);
+  old.date(0, 1390), old.date(2, 1404);
+  const StyleExtract of_old = old.classify();
+  EXPECT_EQ(of_old.styles[1].built(), Era::pre1840);
+  EXPECT_LE(of_old.dates[1].from, 1390);
+  EXPECT_LT(of_old.dates[1].to, 1450) << "years before 1500 are years, too";
+}
+
+TEST(ClassifyExtract, TheClassSaysLittleOfTheEraWhereDatedNeighboursAre) {
+  Row row(5);
+  const StyleExtract none = row.classify();
+  ASSERT_EQ(none.styles[2].style_class(), StyleClass::gruenderzeit);
+  for (const std::size_t i : {0u, 1u, 3u, 4u}) row.date(i, 1926);
+  const StyleExtract s = row.classify();
+  EXPECT_EQ(s.styles[2].built(), Era::from1919);
+  EXPECT_GT(s.styles[2].era[static_cast<std::size_t>(Era::from1919)], 0.8f);
+  EXPECT_TRUE(classify::agree(s.styles[2].style_class(), s.styles[2].built()));
+}
+
 TEST(ClassifyExtract, ADateSpeaksForARowOfItsTime) {
   const auto infill = [](int own, int left, int right) {
     Row row(7);
