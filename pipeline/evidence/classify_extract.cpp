@@ -396,8 +396,8 @@ void Classifier::years() {
       double between = 0;
       for (const auto& [year, weight] : heard)
         if (year >= date.from && year <= date.to) between += weight;
-      date.confidence =
-          std::min(kMostConfident, out.styles[b].era[static_cast<std::size_t>(era)] * static_cast<float>(between / all));
+      date.confidence = std::min(kMostConfident,
+                                 out.styles[b].era[static_cast<std::size_t>(era)] * static_cast<float>(between / all));
     }
   });
 }

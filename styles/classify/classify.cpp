@@ -200,7 +200,8 @@ model::YearRange years_of(model::Era era) {
 double share_before(const PerAnswer& eras, int year) {
   double share = 0;
   for (std::size_t e = 0; e < model::kEraCount; ++e)
-    share += eras[e] * std::clamp(static_cast<double>(year - kFrom[e]) / static_cast<double>(kTo[e] - kFrom[e] + 1), 0.0, 1.0);
+    share += eras[e] *
+             std::clamp(static_cast<double>(year - kFrom[e]) / static_cast<double>(kTo[e] - kFrom[e] + 1), 0.0, 1.0);
   return share;
 }
 

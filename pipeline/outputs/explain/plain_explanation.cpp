@@ -401,11 +401,12 @@ class PlainText {
           dots == std::string::npos ? date : date.substr(0, dots) + " to " + date.substr(dots + 2);
       return ", built " + years + ", " + v_.given("construction_date");
     }
-    if (const std::size_t dots = date.find(".."); v_.source("construction_date") == "neighbours" && dots != std::string::npos)
+    if (const std::size_t dots = date.find("..");
+        v_.source("construction_date") == "neighbours" && dots != std::string::npos)
       if (const double voices = number_behind(v_.why("construction_date"), ""); voices >= 1)
-        return fmt::format(", built about {} to {}, as {} near it with mapped dates suggest{} ({})", date.substr(0, dots),
-                           date.substr(dots + 2), count_of(voices, "house"), voices == 1 ? "s" : "",
-                           v_.sureness("construction_date"));
+        return fmt::format(", built about {} to {}, as {} near it with mapped dates suggest{} ({})",
+                           date.substr(0, dots), date.substr(dots + 2), count_of(voices, "house"),
+                           voices == 1 ? "s" : "", v_.sureness("construction_date"));
     const std::string era = v_.text("era");
     const bool old_class = style_class == "gruenderzeit" || style_class == "tenement";
     const bool old_era = era == "pre1840" || era == "1840_1918";

@@ -3,9 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <numeric>
-
 #include <cmath>
+#include <numeric>
 
 #include "pipeline/base/error.h"
 #include "tests/unit/classify/small_weights.h"

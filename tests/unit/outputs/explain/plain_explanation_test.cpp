@@ -223,10 +223,12 @@ TEST(PlainExplanation, AnEraThatContradictsTheStyleIsNotTold) {
 
 TEST(PlainExplanation, YearsOfDatedNeighboursAreTold) {
   Json j = house();
-  j["attributes"].push_back(attribute("construction_date", "1888..1899", "neighbours", 0.6,
-                                      "3 dated neighbours within 150 m; of those of the era the middle one is of 1893"));
-  EXPECT_THAT(text_of(j), HasSubstr("a Gründerzeit house (sure), built about 1888 to 1899, as 3 houses near it with mapped "
-                                    "dates suggest (likely); drawn as"));
+  j["attributes"].push_back(
+      attribute("construction_date", "1888..1899", "neighbours", 0.6,
+                "3 dated neighbours within 150 m; of those of the era the middle one is of 1893"));
+  EXPECT_THAT(text_of(j),
+              HasSubstr("a Gründerzeit house (sure), built about 1888 to 1899, as 3 houses near it with mapped "
+                        "dates suggest (likely); drawn as"));
 }
 
 TEST(PlainExplanation, OtherDoorsAreToldOnce) {
