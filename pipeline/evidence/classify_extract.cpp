@@ -142,7 +142,7 @@ struct Classifier {
 
   bool known(std::size_t b) const { return needed.has_style(b) && facts.features[b].has(Feature::area); }
 
-  PerAnswer own_era(std::size_t b, const FeatureVector& f) const;
+  PerAnswer own_era(std::size_t b, const FeatureVector& f, std::span<const float> quarter = {}) const;
   bool is_infill(std::size_t b) const;
   void eras_and_styles();
   void quarters();
@@ -152,9 +152,11 @@ struct Classifier {
   void storeys_and_roofs();
 };
 
-/// What a building's own evidence and its region say of its era.
-PerAnswer Classifier::own_era(std::size_t b, const FeatureVector& f) const {
+/// What a building's own evidence, its quarter and its region say of its era. \param quarter  its morphology; empty: not asked
+PerAnswer Classifier::own_era(std::size_t b, const FeatureVector& f, std::span<const float> quarter) const {
   PerAnswer era = tables.era.log_odds(f, options.tags);
+  const PerAnswer by_quarter = classify::era_of_quarter(tables.quarter, quarter, tables.era);
+  for (std::size_t e = 0; e < kEras; ++e) era[e] += by_quarter[e];
   const classify::RegionPrior* region = prior ? prior(static_cast<std::uint32_t>(b)) : nullptr;
   if (region != nullptr && region->era) {
     const PerAnswer add = classify::prior_log_odds(*region->era, tables.era);
@@ -213,7 +215,7 @@ void Classifier::eras_and_styles() {
       s.non_house = tags.non_house[b] >= 0 &&
                     (options.tags || tags.reasons[static_cast<std::size_t>(tags.non_house[b])].by_geometry());
 
-      PerAnswer p = own_era(b, f);
+      PerAnswer p = own_era(b, f, s.morphology);
       const Poll::Result votes = era_poll.ask(static_cast<std::uint32_t>(b), near);
       // What is dated speaks for itself.
       const bool is_dated = options.dates && tags.dates[b].confidence > 0.5f;
@@ -657,9 +659,9 @@ StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, c
   out.dates.resize(classifier.n);
   out.elsewhere.assign(classifier.n, {});
   out.region.assign(classifier.n, {});
-  classifier.eras_and_styles();
-  progress.advance_to(1);
   classifier.quarters();
+  progress.advance_to(1);
+  classifier.eras_and_styles();
   progress.advance_to(2);
   if (options.smooth) classifier.smooth_styles();
   progress.advance_to(3);

@@ -101,8 +101,41 @@ Tables Tables::read(const std::string& configs) {
     t.smoothing.era = s->number("era", 0, 2).value_or(t.smoothing.era);
     s->finish();
   }
+  if (auto q = file.table("quarter")) {
+    t.quarter.say = q->number("say", 0, 2).value_or(t.quarter.say);
+    for (std::size_t m = 0; m < model::kMorphologyNames.size(); ++m) {
+      const auto shares = q->numbers(model::kMorphologyNames[m]);
+      double sum = 0;
+      for (const double share : shares.value_or(std::vector<double>{})) sum += share >= 0 ? share : 2;
+      if (!shares || shares->size() != model::kEraCount || std::fabs(sum - 1) > 0.01)
+        throw base::InputError(folder + "neighbours.toml", "quarter." + std::string(model::kMorphologyNames[m]),
+                               "shares of the four eras are missing, or their sum is not 1",
+                               "Write [pre1840, 1840_1918, 1919_1945, post1945], for example [0.1, 0.4, 0.2, 0.3]");
+      std::ranges::copy(*shares, t.quarter.eras[m].begin());
+    }
+    q->finish();
+  }
   file.finish();
   return t;
+}
+
+PerAnswer era_of_quarter(const QuarterSay& quarter, std::span<const float> morphology, const EvidenceModel& era) {
+  PerAnswer out{};
+  if (quarter.say <= 0) return out;
+  constexpr double kLeast = 1e-3;
+  std::array<double, model::kEraCount> shares{};
+  double all = 0;
+  for (std::size_t m = 0; m < morphology.size(); ++m)
+    for (std::size_t e = 0; e < shares.size(); ++e) {
+      const double share = static_cast<double>(morphology[m]) * quarter.eras[m][e];
+      shares[e] += share, all += share;
+    }
+  if (all <= 0) return out;
+  for (std::size_t e = 0; e < shares.size(); ++e) {
+    const double usual = era.base()[e] > 0 ? era.base()[e] : 1.0 / model::kEraCount;
+    out[e] = round_log_odds(quarter.say * base::log(std::max(shares[e], kLeast) / usual));
+  }
+  return out;
 }
 
 bool any_asks(const Tables& tables, std::string_view group) {

@@ -30,6 +30,16 @@ struct Smoothing {
   double era = 0.3;     ///< how much the style has a say in the era: power of its probabilities
 };
 
+/// What the quarter of a house says of its era.
+struct QuarterSay {
+  double say = 0;  ///< power of what it says; 0: nothing
+  std::array<std::array<double, model::kEraCount>, model::kMorphologyCount> eras{};  ///< shares by morphology
+};
+
+/// Log-odds of the eras by what the morphology of the quarter may be: `say` times the log of the eras' expected shares over those of the
+/// data of the fit.
+PerAnswer era_of_quarter(const QuarterSay& quarter, std::span<const float> morphology, const EvidenceModel& era);
+
 /// What may be assumed of a region before a building is looked at, by its district rules (`[prior]`).
 struct RegionPrior {
   std::optional<std::array<double, model::kStyleClassCount>> style;  ///< probabilities
@@ -57,6 +67,7 @@ struct Tables {
   EvidenceModel style, era, morphology, storeys, roof;
   VoteKernel storeys_votes, roof_votes, era_votes;
   Smoothing smoothing;
+  QuarterSay quarter;
   std::vector<int> use_of_style;      ///< per index of the catalogue: bits of the kinds of use it is built for; 0: any
   std::vector<bool> attached;         ///< per index of the catalogue: stands in rows and pairs only
   std::vector<double> storey_counts;  ///< of the answers of `storeys`, ascending; the last stands for more, too
