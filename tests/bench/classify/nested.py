@@ -23,7 +23,7 @@ import fit
 from common import STYLES
 
 # Runs: priors of [era] and [roof] move together (neither hears the other), then [style] with the shipped priors.
-PRIORS = [("0.3", "0.1"), ("0.5", "0.2"), ("1", "0.5"), ("2", "1")]
+PRIORS = [("0.2", "0.1"), ("0.5", "0.2"), ("1", "0.5"), ("2", "1")]
 DECISIONS = ["0.2", "0.3", "0.5", "1"]  # era
 
 
