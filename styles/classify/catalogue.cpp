@@ -137,6 +137,7 @@ Style read_style(TomlTable& table, const std::string& id, const Palettes& palett
   }
   s.position = static_cast<StylePosition>(
       one_of(table, "position", required(table, "position", table.text("position")), kStylePositionNames));
+  s.share = table.number("share", 0.001, 1).value_or(1);
   s.storeys = spread_of(table, "storeys", required(table, "storeys", table.numbers("storeys")), 1, 60);
   s.storey_height = required(table, "storey_height", table.number("storey_height", 2, 15));
   s.ground_floor_height = required(table, "ground_floor_height", table.number("ground_floor_height", 2, 15));

@@ -42,6 +42,7 @@ struct Style {
   model::YearRange years;                       ///< 500 and 2100 are open ends
   std::vector<model::Morphology> morphologies;  ///< empty: anywhere
   StylePosition position = StylePosition::any;
+  double share = 1;  ///< of the houses that fit it, beside the styles that fit as well; less than 1 for rare ones
   Spread storeys;
   double storey_height = 3;        ///< floor to floor, mean of all storeys of a typical house
   double ground_floor_height = 3;  ///< floor to floor

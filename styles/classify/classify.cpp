@@ -290,7 +290,7 @@ std::vector<Substyle> substyles(const Tables& tables, const RegionPrior* region,
     double sum = 0;
     for (const std::uint8_t index : tables.catalogue.of_class(static_cast<StyleClass>(c))) {
       const Style& s = tables.catalogue[index];
-      double w = region != nullptr && index < region->substyle.size() ? region->substyle[index] : 1;
+      double w = s.share * (region != nullptr && index < region->substyle.size() ? region->substyle[index] : 1);
       double era = 0;
       for (int e = 0; e < model::kEraCount; ++e)
         era += static_cast<double>(style.era[static_cast<std::size_t>(e)]) * share_in(s.years, e);

@@ -321,6 +321,19 @@ TEST(Substyles, FitClassAndPosition) {
             StylePosition::wing);
 }
 
+TEST(Substyles, ARareStyleIsNotTheAnswerForAnyTownHouse) {
+  auto old = style(StyleClass::other, Era::pre1840, Morphology::old_town);
+  const SubstyleFacts house{.style = old, .position = BuildingPosition::mid_row, .storeys = 3};
+  EXPECT_EQ(of(best(house)).share, 1) << of(best(house)).id;
+  const auto p_of = [](const SubstyleFacts& facts, std::string_view id) {
+    for (const Substyle& s : substyles(tables(), nullptr, facts, 255))
+      if (of(s).id == id) return s.p;
+    return 0.0;
+  };
+  EXPECT_LT(p_of(house, "baroque_palais"), 0.2 * p_of(house, "burgher_eaves")) << "the same storeys, years and quarter";
+  EXPECT_GT(p_of(house, "baroque_palais"), 0);
+}
+
 TEST(Substyles, FitTheQuarterAndTheEra) {
   for (const Morphology m : {Morphology::perimeter_block, Morphology::detached, Morphology::terrace}) {
     const auto s = style(StyleClass::modern, Era::from1919, m);
