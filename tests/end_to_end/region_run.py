@@ -97,7 +97,7 @@ class Map:
                 self.delete(b)
             elif what == 'retag':
                 tags = dict(b.tags, **rng.choice([{'building:levels': str(rng.randrange(1, 9))}, {'roof:shape': rng.choice(['flat', 'gabled', 'hipped'])},
-                                                  {'start_date': str(rng.randrange(1850, 2020))}, {'building': 'garage'}, {'height': 'tall'}]))
+                                                  {'start_date': str(rng.randrange(1850, 2020))}, {'heritage': '4'}, {'building': 'garage'}, {'height': 'tall'}]))
                 self.edit(b, tags=tags)
             elif what == 'split' and len(corners) >= 4:
                 last = max(k[1] for k in self.objects if k[0] == 1) + 1
