@@ -74,6 +74,9 @@ TEST(Tables, NameThePlaceOfAnError) {
               AllOf(HasSubstr("neighbours.toml:2:"), HasSubstr("rounds")));
   EXPECT_THAT(complaint("neighbours.toml", "[style]\nrounds = 6\n"), HasSubstr("neighbours.toml:2:"));
   EXPECT_THAT(complaint("neighbours.toml", "[storey]\n"), HasSubstr("storeys"));
+  EXPECT_THAT(complaint("neighbours.toml", "[quarter]\nsay = 0.5\n"), HasSubstr("quarter.perimeter_block"));
+  EXPECT_THAT(complaint("neighbours.toml", "[quarter]\nperimeter_block = [0.5, 0.5, 0.5, -0.5]\n"),
+              AllOf(HasSubstr("quarter.perimeter_block"), HasSubstr("sum")));
   EXPECT_THAT(complaint("tags.toml", "[styles_of_use]\nchurch = [\"palace\"]\n"),
               HasSubstr("there is no style `palace`"));
   EXPECT_THAT(complaint("tags.toml", "[styles_of_use]\nchruch = [\"public\"]\n"),
@@ -276,6 +279,25 @@ TEST(Reconcile, ADateDecidesWhatPlanAndRowCannot) {
   s.era = {0.95f, 0.03f, 0.01f, 0.01f};
   reconcile(s, 0.3);
   EXPECT_EQ(s.style_class(), StyleClass::other) << "a house of 1500 is no Gründerzeit";
+}
+
+TEST(EraOfQuarter, SaysWhatIsKnownOfSuchQuartersOverWhatTheModelLearnt) {
+  const Tables shipped = Tables::read(std::string(BLOCKRAND_SOURCE_DIR) + "/configs");
+  const auto says = [&](std::array<float, model::kMorphologyCount> morphology, double say) {
+    QuarterSay quarter = shipped.quarter;
+    quarter.say = say;
+    return era_of_quarter(quarter, morphology, shipped.era);
+  };
+  EXPECT_GT(shipped.quarter.say, 0);
+  const PerAnswer block = says({1, 0, 0, 0, 0}, 1);
+  EXPECT_NEAR(block[1], std::log(shipped.quarter.eras[0][1] / shipped.era.base()[1]), 1e-3);
+  EXPECT_GT(block[1], block[3]) << "a perimeter block is of 1840 to 1918";
+  EXPECT_NEAR(says({1, 0, 0, 0, 0}, 0.5)[1], block[1] / 2, 1e-3);
+  const PerAnswer old_town = says({0, 1, 0, 0, 0}, 1), slab = says({0, 0, 1, 0, 0}, 1);
+  EXPECT_GT(old_town[0], old_town[3]);
+  EXPECT_GT(slab[3], slab[1]);
+  EXPECT_EQ(says({1, 0, 0, 0, 0}, 0), PerAnswer{});
+  EXPECT_EQ(says({0, 0, 0, 0, 0}, 1), PerAnswer{}) << "nothing is known of the quarter";
 }
 
 TEST(Reconcile, AClassAsLikelyAsUsualSaysNothingOfTheEra) {
