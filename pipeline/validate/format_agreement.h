@@ -58,7 +58,7 @@ void compare_meshes(const Side& reference, const Glb& glb, const std::string& gl
 /// A body in few bytes, to be compared with the same body in a file of the whole build.
 struct BodyDigest {
   std::uint64_t geometry = 0;    ///< of footprint and solids with kinds and colours, whatever the order of faces
-  double drawn = 0;              ///< m² of triangles, of GLB alone
+  DrawnArea drawn;               ///< of GLB alone
   std::uint64_t attributes = 0;  ///< of values, sources and confidences
 };
 BodyDigest digest(const ReadBody& body);

@@ -528,18 +528,20 @@ void append(Glb& glb, Glb&& piece) {
   glb.position_step = std::max(glb.position_step, piece.position_step);
 }
 
-std::vector<double> drawn_areas(const Glb& glb) {
+std::vector<DrawnArea> drawn_areas(const Glb& glb) {
   const auto area = [](const Point3& a, const Point3& b, const Point3& c) { return length(cross(b - a, c - a)) / 2; };
-  std::vector<double> out;
+  std::vector<DrawnArea> out;
   for (std::size_t i = 0; i < glb.triangles.size(); ++i) {
     double sum = 0;
     for (const auto* triangles : {&glb.triangles[i], &glb.element_triangles[i]})
       for (const GlbTriangle& t : *triangles) sum += area(t.corners[0], t.corners[1], t.corners[2]);
-    out.push_back(sum);
+    out.push_back({sum, 0});
   }
   for (const GlbPlace& place : glb.places)
     for (const GlbTriangle& t : glb.elements[place.element].triangles)
-      out[place.row] += area(placed(place, t.corners[0]), placed(place, t.corners[1]), placed(place, t.corners[2]));
+      out[place.row].placed +=
+          area(placed(place, t.corners[0]), placed(place, t.corners[1]), placed(place, t.corners[2]));
+  for (DrawnArea& drawn : out) drawn.all += drawn.placed;
   return out;
 }
 

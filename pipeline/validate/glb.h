@@ -72,7 +72,12 @@ Glb read_glb(std::string_view bytes, const std::string& name);
 /// Adds what another GLB of the same frame holds: a tile in pieces.
 void append(Glb& glb, Glb&& piece);
 
-/// m², of what is drawn of each body: its triangles and those of its elements. Parallel to contents.bodies.
-std::vector<double> drawn_areas(const Glb& glb);
+/// m², of what is drawn of a body.
+struct DrawnArea {
+  double all = 0;     ///< its triangles and those of its elements
+  double placed = 0;  ///< those of the elements that are placed: of tiles, pieces of others that are scaled
+};
+/// Parallel to contents.bodies.
+std::vector<DrawnArea> drawn_areas(const Glb& glb);
 
 }  // namespace blockrand::validate

@@ -138,6 +138,13 @@ class Sound(Validated):
     def test_single_files(self):
         self.sound(self.build(SAMPLE, 'single', '--single-glb', '--single-cityjson'))
 
+    def test_windows_of_tiles_are_others_scaled(self):
+        # A house here has 87 windows whose bands tiles show 3 cm wider than model.glb: 0.4 % of all that is drawn of it.
+        source = extract('karlsruhe-suedweststadt-2026.osm.pbf')
+        if not source:
+            self.skipTest('the extracts of ../shared/data are absent')
+        self.sound(self.build(source, 'scaled', '--lod', '3', '--single-glb', '--formats', 'gltf', '--no-report', '--no-explain'))
+
     def test_without_report_and_explanations(self):
         self.sound(self.build(SAMPLE, 'bare', '--no-report', '--no-explain'))
 

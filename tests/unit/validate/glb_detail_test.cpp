@@ -120,8 +120,8 @@ outputs::GlbOptions object_options(Instancing how) {
 }
 
 TEST_F(GlbDetail, ObjectsOfHousesAreSoundAndShowTheSame) {
-  const std::vector<double> wanted = drawn_areas(read(ext_).glb);
-  ASSERT_GT(wanted.at(0), 500);
+  const std::vector<DrawnArea> wanted = drawn_areas(read(ext_).glb);
+  ASSERT_GT(wanted.at(0).all, 500);
   for (const Instancing how : {Instancing::ext, Instancing::baked, Instancing::nodes}) {
     const outputs::Glb written = outputs::write_glb(sample_.region(), object_options(how));
     EXPECT_EQ(written.bytes.find("extensionsRequired"), std::string::npos) << "every reader takes it";
@@ -135,9 +135,9 @@ TEST_F(GlbDetail, ObjectsOfHousesAreSoundAndShowTheSame) {
     for (const GlbPlace& place : r.glb.places) triangles += r.glb.elements[place.element].triangles.size();
     EXPECT_EQ(triangles, written.triangles);
     EXPECT_EQ(written.buildings, sample_.region().buildings.size());
-    const std::vector<double> drawn = drawn_areas(r.glb);
+    const std::vector<DrawnArea> drawn = drawn_areas(r.glb);
     ASSERT_EQ(drawn.size(), wanted.size());
-    for (std::size_t i = 0; i < drawn.size(); ++i) EXPECT_NEAR(drawn[i], wanted[i], 1e-3 * wanted[i]) << i;
+    for (std::size_t i = 0; i < drawn.size(); ++i) EXPECT_NEAR(drawn[i].all, wanted[i].all, 1e-3 * wanted[i].all) << i;
     for (const model::Point3& p : r.glb.vertices) {
       EXPECT_GT(p.x, written.min.x - 0.002);
       EXPECT_LT(p.x, written.max.x + 0.002);
