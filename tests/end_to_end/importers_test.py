@@ -227,11 +227,18 @@ class ByAssimp(Model):
         self.assertEqual(run.code, 0, run)
         self.assertNotIn('ERROR', run.out + run.err)
         said = {k: int(n) for k, n in re.findall(r'(?m)^(Nodes|Meshes|Faces|Materials): +(\d+)', run.out)}
-        primitives = sum(len(mesh['primitives']) for mesh in self.glb.json['meshes'])
-        # assimp puts a node above all others, and joins materials that differ by name alone.
+        # assimp puts a node above all others, and joins materials that differ by name alone and meshes that are nearly equal: two
+        # houses of the sample differ by 3 mm.
+        looks = [json.dumps({k: v for k, v in m.items() if k != 'name'}, sort_keys=True) for m in self.glb.json['materials']]
+        faces = [(tuple(round(c, 1) for at in self.glb.accessor(p['attributes']['POSITION']) for c in at),
+                  self.glb.accessor(p['indices']), looks[p['material']])
+                 for mesh in self.glb.json['meshes'] for p in mesh['primitives']]
+        distinct = {(at, tuple(indices), look): len(indices) // 3 for at, indices, look in faces}
         self.assertEqual(said['Nodes'], len(self.glb.json['nodes']) + 1)
-        self.assertEqual(said['Meshes'], primitives)
-        self.assertEqual(said['Faces'], sum(triangles_of(self.glb, mesh) for mesh in range(len(self.glb.json['meshes']))))
+        self.assertTrue(len(distinct) <= said['Meshes'] <= len(faces), (len(distinct), said, len(faces)))
+        self.assertGreater(len(distinct), 0.9 * len(faces), 'else the bounds say nothing')
+        all_faces = sum(len(indices) // 3 for _, indices, _ in faces)
+        self.assertTrue(sum(distinct.values()) <= said['Faces'] <= all_faces, (sum(distinct.values()), said, all_faces))
         self.assertTrue(0.7 * len(self.glb.json['materials']) < said['Materials'] <= len(self.glb.json['materials']), said)
         for house, _ in self.houses[:50]:
             self.assertIn(house['name'][:30], run.out)
