@@ -56,9 +56,9 @@ export const MODES: Mode[] = [
     name: 'era',
     label: 'Era',
     categories: categories(
-      ['pre1840', 'before 1840', '#4b2055'],
-      ['1840_1918', '1840 to 1918', '#b5485f'],
-      ['1919_1945', '1919 to 1945', '#f0a35e'],
+      ['pre1840', 'before 1840', '#2b1055'],
+      ['1840_1918', '1840 to 1918', '#8a3ba8'],
+      ['1919_1945', '1919 to 1945', '#e58a5f'],
       ['post1945', 'since 1945', '#f7e8a4'],
     ),
     key_of: (table, row) => table.text('era', row),
