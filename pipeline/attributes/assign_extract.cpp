@@ -194,7 +194,7 @@ struct DistrictAssigner::Impl {
           if (q.distance > kLargeArea) pins.push_back({node_question, "", n.id, n.rings});
         }
         named.push_back({static_cast<std::uint32_t>(&set - book.sets.data()),
-                         fmt::format("{}:{}: nothing here is '{}'{}", set.file, q.line, q.name,
+                         fmt::format("{}:{}: nothing here is '{}'{}", q.asked_in, q.line, q.name,
                                      q.kind == Kind::place && q.distance == 0
                                          ? " as a polygon; a place that is a node needs a radius"
                                          : ""),

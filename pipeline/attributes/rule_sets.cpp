@@ -14,9 +14,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The vector files that a set's rules name, and what stands beside a Shapefile: its attributes and its CRS. One that
-/// does not exist is told by who reads it.
-void add_vector_files(const districts::RuleSet& set, const std::string& configs, ReadRuleSets& out) {
+/// The files of the sets that a set builds on, the vector files that its rules name, and what stands beside a
+/// Shapefile: its attributes and its CRS. One that does not exist is told by who reads it.
+void add_named_files(const districts::RuleSet& set, const std::string& configs, ReadRuleSets& out) {
   const auto add = [&](const fs::path& path) {
     std::error_code error;
     if (!fs::is_regular_file(path, error)) return;
@@ -26,6 +26,7 @@ void add_vector_files(const districts::RuleSet& set, const std::string& configs,
     const std::pair<std::string, std::string> file{name, path.string()};
     if (std::find(out.files.begin(), out.files.end(), file) == out.files.end()) out.files.push_back(file);
   };
+  for (const std::string& base : set.bases) add(fs::path(base).lexically_normal());
   for (const districts::PlaceQuery& q : set.queries) {
     if (q.kind != districts::PlaceQuery::Kind::file) continue;
     fs::path path(q.file);
@@ -43,6 +44,21 @@ void add_vector_files(const districts::RuleSet& set, const std::string& configs,
   }
 }
 
+/// \throws base::InputError  a class of appearance keeps no sub-style
+void check_absent(const districts::RuleSet& set, const classify::Catalogue& catalogue) {
+  for (int c = 0; c < model::kStyleClassCount; ++c) {
+    const auto left = [&](std::uint8_t i) {
+      return std::find(set.prior.absent.begin(), set.prior.absent.end(), catalogue[i].id) == set.prior.absent.end();
+    };
+    const auto of_class = catalogue.of_class(static_cast<model::StyleClass>(c));
+    if (!of_class.empty() && std::none_of(of_class.begin(), of_class.end(), left))
+      throw base::InputError(
+          set.file, "[prior] absent",
+          "leaves no sub-style to the class " + std::string(model::name(static_cast<model::StyleClass>(c))),
+          "Keep at least one");
+  }
+}
+
 }  // namespace
 
 ReadRuleSets read_rule_sets(const std::string& configs, const std::string& districts) {
@@ -53,8 +69,9 @@ ReadRuleSets read_rule_sets(const std::string& configs, const std::string& distr
     out.book.presets = districts::read_presets(presets.string());
     out.files.emplace_back("styles/presets.toml", presets.string());
   }
+  classify::Catalogue catalogue{{}};
   if (fs::exists(fs::path(configs) / "styles" / "catalogue.toml", error)) {
-    const classify::Catalogue catalogue = classify::read_catalogue(configs);
+    catalogue = classify::read_catalogue(configs);
     for (std::size_t i = 0; i < catalogue.size(); ++i) out.book.substyles.push_back(catalogue[i].id);
     out.files.emplace_back("styles/catalogue.toml", (fs::path(configs) / "styles" / "catalogue.toml").string());
   }
@@ -79,18 +96,21 @@ ReadRuleSets read_rule_sets(const std::string& configs, const std::string& distr
                              (near.empty() ? "Known: " + all : "Did you mean " + near + "?"));
     }
     districts::read_rule_set(file.string(), out.book);
+    check_absent(out.book.sets.back(), catalogue);
     out.book.sets.back().polygon.clear();  // who names a set means it for everything
     out.files.emplace_back(named != sets.end() ? "districts/" + file.filename().string() : districts, file.string());
-    add_vector_files(out.book.sets.back(), configs, out);
+    add_named_files(out.book.sets.back(), configs, out);
     return out;
   }
   const districts::RuleSet* anywhere = nullptr;
   out.book.sets.reserve(sets.size());
   for (const fs::path& file : sets) {
     districts::read_rule_set(file.string(), out.book);
-    out.files.emplace_back("districts/" + file.filename().string(), file.string());
+    const std::pair<std::string, std::string> name{"districts/" + file.filename().string(), file.lexically_normal()};
+    if (std::find(out.files.begin(), out.files.end(), name) == out.files.end()) out.files.push_back(name);
     const districts::RuleSet& set = out.book.sets.back();
-    add_vector_files(set, configs, out);
+    check_absent(set, catalogue);
+    add_named_files(set, configs, out);
     if (!set.polygon.empty()) continue;
     if (anywhere)
       throw base::InputError(file.string(), "", "has no polygon, and neither has " + anywhere->file,

@@ -14,8 +14,10 @@ std::vector<classify::RegionPrior> region_priors(const districts::RuleSets& book
     classify::RegionPrior prior;
     prior.style = set.prior.style;
     prior.era = set.prior.era;
-    if (!set.prior.substyle.empty()) {
+    if (!set.prior.substyle.empty() || !set.prior.absent.empty()) {
       prior.substyle.assign(tables.catalogue.size(), 1);
+      for (const std::string& id : set.prior.absent)
+        if (const auto index = tables.catalogue.index(id)) prior.substyle[*index] = 0;
       for (const auto& [id, weight] : set.prior.substyle)
         if (const auto index = tables.catalogue.index(id)) prior.substyle[*index] = classify::kNamedSubstyle * weight;
     }

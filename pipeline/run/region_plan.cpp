@@ -7,6 +7,7 @@
 
 #include "importers/imagery/image_files.h"
 #include "importers/osm/apply_changes.h"
+#include "pipeline/attributes/rule_sets.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/run/replication.h"
@@ -34,8 +35,11 @@ std::string settings_sha256(const UpdateOptions& options) {
   std::sort(files.begin(), files.end());
   for (const fs::path& path : files)
     add(path.lexically_relative(options.build.configs).string()), add(base::sha256_file(path.string()));
-  for (const std::string& path : {options.build.overrides, options.build.districts, options.region.polygon})
+  for (const std::string& path : {options.build.overrides, options.region.polygon})
     if (!path.empty() && fs::is_regular_file(path, error)) add(base::sha256_file(path));
+  if (!options.build.districts.empty())  // with what it builds on and the files that its rules name
+    for (const auto& [name, path] : attributes::read_rule_sets(options.build.configs, options.build.districts).files)
+      add(name), add(base::sha256_file(path));
   std::vector<std::string> rasters;
   if (!options.build.terrain.empty()) rasters.push_back(options.build.terrain);
   for (const importers::imagery::ImageSource& image : options.build.imagery.images) rasters.push_back(image.path);

@@ -256,9 +256,8 @@ void compare_digests(const BodyDigests& tiles, const std::string& format, const 
     const DrawnArea &there = found->second.drawn, &here = d.drawn;
     if (!(std::fabs(there.all - here.all) <=
           kDrawnTolerance * (1 + here.all) + kPlacedTolerance * std::max(there.placed, here.placed)))
-      findings.push_back(
-          {Check::geometry_differs, file, id,
-           fmt::format("{:.2f} m² are drawn of it, in {} {:.2f}", there.all, format, here.all)});
+      findings.push_back({Check::geometry_differs, file, id,
+                          fmt::format("{:.2f} m² are drawn of it, in {} {:.2f}", there.all, format, here.all)});
     if (found->second.attributes != d.attributes)
       findings.push_back({Check::attribute_differs, file, id, "other attributes than in " + format});
     left.erase(found);

@@ -485,8 +485,7 @@ class Checker {
       const bool digested = f == kGltf       ? context_.record.single_glb
                             : f == kCityJson ? context_.record.single_cityjson
                                              : false;
-      const std::vector<DrawnArea> drawn =
-          f == kGltf && digested ? drawn_areas(*tile_.glb) : std::vector<DrawnArea>();
+      const std::vector<DrawnArea> drawn = f == kGltf && digested ? drawn_areas(*tile_.glb) : std::vector<DrawnArea>();
       // Where elements are part of the one mesh and stand apart from the other, numbers of triangles say nothing.
       const bool countable = context_.record.lod < 3 || (context_.record.baked == context_.record.single_baked &&
                                                          !(baked_ && context_.record.single_objects));

@@ -20,6 +20,7 @@ struct Preset {
   std::vector<std::string> substyles;  ///< ids of the catalogue of styles that it is meant for
   std::string grammar{};               ///< rule file below configs/grammars; empty: its walls stay closed
   std::vector<std::pair<std::string, std::string>> attributes{};  ///< values of the rule file's attributes, by name
+  std::string declared_in{};  ///< file of the rule set; empty: of the list of presets
 };
 
 /// Reads a list of presets, in alphabetical order of names.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "pipeline/base/error.h"
 #include "pipeline/base/toml_file.h"
@@ -31,7 +32,7 @@ std::vector<std::string> position_names() {
 
 /// Place of `value` among `names`; an error at `key` with the nearest where it is none of them.
 std::size_t index_of(const TomlTable& table, std::string_view key, const std::string& value,
-                     const std::vector<std::string>& names, const char* what) {
+                     const std::vector<std::string>& names, const std::string& what) {
   const auto found = std::find(names.begin(), names.end(), value);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   const std::string near = base::nearest(value, names);
@@ -105,25 +106,35 @@ std::vector<model::Location> ring(TomlTable& table, std::string_view key) {
 
 class Reader {
  public:
-  Reader(const std::string& path, RuleSets& book) : folder_(std::filesystem::path(path).parent_path()), book_(book) {
+  /// \param derived  files of the sets that have this one as their base, the outermost first
+  Reader(const std::string& path, RuleSets& book, std::vector<std::string> derived = {})
+      : folder_(std::filesystem::path(path).parent_path()), book_(book), derived_(std::move(derived)) {
     set_.file = path;
     set_.name = std::filesystem::path(path).stem().string();
+    derived_.push_back(path);
   }
 
   RuleSet read(TomlTable root) {
     set_.title = root.text("title").value_or(set_.name);
     set_.description = root.text("description").value_or("");
     set_.polygon = ring(root, "polygon");
+    const RuleSet base = base_of(root);
     if (auto presets = root.table("presets")) {
       for (const std::string& name : presets->keys()) {
-        if (find_preset(book_.presets, name) != kNoPreset)
+        Preset preset = read_preset(name, *presets->table(name));
+        preset.declared_in = set_.file;
+        if (const std::size_t known = find_preset(book_.presets, name); known == kNoPreset)
+          book_.presets.push_back(std::move(preset));
+        else if (!same_file(book_.presets[known].declared_in,
+                            set_.file))  // else read before, as the base of another set
           presets->fail(name, "is a preset already", "Choose another name; presets of all rule sets share one list.");
-        book_.presets.push_back(read_preset(name, *presets->table(name)));
       }
     }
     for (const Preset& p : book_.presets) preset_names_.push_back(p.name);
     for (TomlTable& table : root.tables("rule")) set_.rules.push_back(rule(table));
+    set_.prior = base.prior;
     if (auto table = root.table("prior")) prior(*table);
+    take_over(base, root);
     root.finish();
     const Priors& p = set_.prior;
     if (set_.rules.empty() && !p.style && !p.era && p.substyle.empty() && p.storeys.empty())
@@ -133,8 +144,54 @@ class Reader {
   }
 
  private:
+  static bool same_file(const std::string& a, const std::string& b) {
+    std::error_code error;
+    return !a.empty() && std::filesystem::equivalent(a, b, error);
+  }
+
+  /// The set that `base` names; an empty one where there is no such key.
+  RuleSet base_of(TomlTable& root) {
+    const auto name = name_at(root, "base");
+    if (!name) return {};
+    const bool is_file = name->ends_with(".toml");
+    const std::string path = (folder_ / (is_file ? *name : *name + ".toml")).lexically_normal().string();
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error))
+      root.fail("base", "names a rule set that is not there: " + path, "Paths start at the rule set's folder.");
+    for (const std::string& file : derived_)
+      if (same_file(file, path))
+        root.fail("base", "leads back to " + file, "A rule set cannot be its own base; leave one of them out.");
+    RuleSet base = Reader(path, book_, derived_).read(TomlTable::read(path));
+    set_.bases.push_back(base.file);
+    set_.bases.insert(set_.bases.end(), base.bases.begin(), base.bases.end());
+    return base;
+  }
+
+  /// Rules of the base come after those of the set; one of a name that the set has itself, or leaves out, does not.
+  void take_over(const RuleSet& base, TomlTable& root) {
+    std::set<std::string> gone;
+    for (const Rule& own : set_.rules) gone.insert(own.name);
+    std::vector<std::string> known;
+    for (const Rule& r : base.rules) known.push_back(r.name);
+    if (const auto without = root.texts("without")) {
+      if (base.file.empty()) root.fail("without", "leaves rules of a base out, and there is none", "Name it: base.");
+      for (const std::string& name : *without) {
+        index_of(root, "without", name, known, "rule of " + base.file);
+        if (!gone.insert(name).second)
+          root.fail("without", "names '" + name + "', which this set replaces", "A rule of that name replaces it.");
+      }
+    }
+    for (const Rule& inherited : base.rules) {
+      if (gone.contains(inherited.name)) continue;
+      Rule rule = inherited;
+      for (std::uint32_t& q : rule.where.queries) q = query(base.queries[q]);
+      set_.rules.push_back(std::move(rule));
+    }
+  }
+
   Rule rule(TomlTable& table) {
     Rule rule;
+    rule.file = set_.file;
     rule.line = table.line();
     rule.name = table.text("name").value_or("");
     if (rule.name.empty())
@@ -156,6 +213,7 @@ class Reader {
   }
 
   std::uint32_t query(PlaceQuery q) {
+    if (q.asked_in.empty()) q.asked_in = set_.file;
     set_.queries.push_back(std::move(q));
     return static_cast<std::uint32_t>(set_.queries.size() - 1);
   }
@@ -349,18 +407,26 @@ class Reader {
   }
 
   void prior(TomlTable& table) {
+    // What is given takes the place of the base's; of storeys, each number for itself.
     Priors& out = set_.prior;
+    if (table.has("style")) out.style.emplace().fill(0);
+    if (table.has("era")) out.era.emplace().fill(0);
+    if (table.has("substyle")) out.substyle.clear();
     shares(table, "style", strings(model::kStyleClassNames), "class of appearance",
-           [&](const std::string&, std::size_t i, double p) {
-             if (!out.style) out.style.emplace().fill(0);
-             (*out.style)[i] = p;
-           });
-    shares(table, "era", strings(model::kEraNames), "era", [&](const std::string&, std::size_t i, double p) {
-      if (!out.era) out.era.emplace().fill(0);
-      (*out.era)[i] = p;
-    });
+           [&](const std::string&, std::size_t i, double p) { (*out.style)[i] = p; });
+    shares(table, "era", strings(model::kEraNames), "era",
+           [&](const std::string&, std::size_t i, double p) { (*out.era)[i] = p; });
     shares(table, "substyle", book_.substyles, "style of the catalogue",
            [&](const std::string& name, std::size_t, double p) { out.substyle[name] = p; });
+    if (auto absent = table.texts("absent")) {
+      for (const std::string& id : *absent) {
+        if (!book_.substyles.empty()) index_of(table, "absent", id, book_.substyles, "style of the catalogue");
+        if (out.substyle.contains(id))
+          table.fail("absent", "names '" + id + "', which has a share", "Leave it out here or in substyle.");
+      }
+      out.absent = std::move(*absent);
+    }
+    std::erase_if(out.absent, [&](const std::string& id) { return out.substyle.contains(id); });  // what a base said
     if (auto storeys = table.table("storeys")) {
       for (const std::string& name : storeys->keys()) {
         index_of(*storeys, name, name, strings(kStoreyPriorNames), "kind of house with usual storeys");
@@ -373,6 +439,7 @@ class Reader {
 
   std::filesystem::path folder_;
   RuleSets& book_;
+  std::vector<std::string> derived_;
   RuleSet set_;
   std::vector<std::string> preset_names_;
 };

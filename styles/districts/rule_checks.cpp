@@ -11,12 +11,14 @@ namespace blockrand::districts {
 
 namespace {
 
-[[noreturn]] void fail(const RuleSet& set, const Rule& rule, const std::string& what, const std::string& remedy) {
-  throw base::InputError(set.file, std::to_string(rule.line), "rule '" + rule.name + "' " + what, remedy);
+[[noreturn]] void fail(const Rule& rule, const std::string& what, const std::string& remedy) {
+  throw base::InputError(rule.file, std::to_string(rule.line), "rule '" + rule.name + "' " + what, remedy);
 }
 
-std::string of(const Rule& rule) {
-  return fmt::format("rule '{}' (line {}, level {}, priority {})", rule.name, rule.line, name(rule.level),
+/// \param seen_from  that a message is about: the file is told where it is another one
+std::string of(const Rule& rule, const Rule& seen_from) {
+  const std::string where = rule.file == seen_from.file ? std::string() : rule.file + ", ";
+  return fmt::format("rule '{}' ({}line {}, level {}, priority {})", rule.name, where, rule.line, name(rule.level),
                      rule.priority);
 }
 
@@ -26,8 +28,7 @@ void check_rules(RuleSet& set) {
   std::map<std::string_view, const Rule*> names;
   for (const Rule& rule : set.rules)
     if (const auto [known, fresh] = names.emplace(rule.name, &rule); !fresh)
-      fail(set, rule, fmt::format("has the name of the one in line {}", known->second->line),
-           "Give it a name of its own");
+      fail(rule, fmt::format("has the name of the one in line {}", known->second->line), "Give it a name of its own");
   std::stable_sort(set.rules.begin(), set.rules.end(), [](const Rule& a, const Rule& b) {
     return a.level != b.level ? a.level > b.level : a.priority > b.priority;
   });
@@ -36,12 +37,12 @@ void check_rules(RuleSet& set) {
   for (const Rule& rule : set.rules) {
     const char* const kRemedy = "Give it a higher priority or a finer level, or give the other one conditions";
     if (!rule.presets.empty() && taker)
-      fail(set, rule, "can never choose a preset: " + of(*taker) + " is stronger and holds everywhere", kRemedy);
+      fail(rule, "can never choose a preset: " + of(*taker, rule) + " is stronger and holds everywhere", kRemedy);
     if (rule.presets.empty()) {
       const auto is_taken = [&](const auto& p) { return taken.contains(p.first); };
       if (std::all_of(rule.parameters.begin(), rule.parameters.end(), is_taken))
-        fail(set, rule,
-             "can never have an effect: " + of(*taken.at(rule.parameters.begin()->first)) +
+        fail(rule,
+             "can never have an effect: " + of(*taken.at(rule.parameters.begin()->first), rule) +
                  " is stronger and holds everywhere",
              kRemedy);
     }

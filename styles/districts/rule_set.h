@@ -59,7 +59,8 @@ struct PlaceQuery {
   double distance = 0;                ///< m. place: radius around a node; near: how far
   std::vector<std::string> values;    ///< land_use: any of them
   TagTest feature;                    ///< near
-  int line = 0;                       ///< in the rule set's file
+  std::string asked_in;               ///< the rule set's file
+  int line = 0;                       ///< in it
   /// "in landuse=residential", "within 300 m of railway=rail"
   std::string text() const;
 };
@@ -99,7 +100,8 @@ struct Rule {
   Which which;
   std::vector<WeightedPreset> presets;  ///< empty: the rule gives parameters only
   std::map<std::string, std::string> parameters;
-  int line = 0;
+  std::string file;  ///< of the rule set or its base, as read
+  int line = 0;      ///< in it
   bool unconditional() const;
 };
 
@@ -108,6 +110,7 @@ struct Priors {
   std::optional<std::array<double, model::kStyleClassCount>> style;
   std::optional<std::array<double, model::kEraCount>> era;
   std::map<std::string, double> substyle;  ///< by id of the catalogue
+  std::vector<std::string> absent;         ///< ids of sub-styles that do not occur there
   /// Usual storeys. Keys: kStoreyPriorNames.
   std::map<std::string, double> storeys;
 };
@@ -118,6 +121,7 @@ struct RuleSet {
   std::string name;  ///< of the file, without its ending
   std::string title, description;
   std::string file;                      ///< as read
+  std::vector<std::string> bases;        ///< files whose rules and priors it takes over, the nearest first
   std::vector<model::Location> polygon;  ///< where it holds; empty: anywhere
   std::vector<PlaceQuery> queries;
   std::vector<Rule> rules;  ///< strongest first: finest level, highest priority, order of the file

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <set>
 #include <string>
 
@@ -418,6 +419,129 @@ storeys = { slab = 6 }
   EXPECT_EQ(p.substyle.at("gz_high"), 1);
   EXPECT_EQ(p.storeys.at("slab"), 6);
   EXPECT_EQ(preset_of(book, house()), "mine");
+}
+
+constexpr const char* kBase = R"(
+[presets.mine]
+description = "of the base"
+class = "modern"
+[[rule]]
+name = "usual"
+level = "city"
+preset = "a"
+parameters = { ornament = 0.1 }
+[[rule]]
+name = "near water"
+where.near = { waterway = "river", within = 50 }
+preset = "b"
+[[rule]]
+name = "rows"
+which.position = "mid_row"
+preset = "b"
+[prior]
+style = { gruenderzeit = 0.25, modern = 0.75 }
+era = { 1840_1918 = 1 }
+substyle = { gz_high = 1 }
+absent = ["reform_block"]
+storeys = { slab = 6, terrace = 2 }
+)";
+
+/// Reads `text` with kBase as base.toml beside it.
+RuleSets book_with_base(const std::string& text) {
+  RuleSets book;
+  for (const char* name : {"a", "b", "c"}) book.presets.push_back({name, "one", model::StyleClass::gruenderzeit, {}});
+  book.substyles = {"gz_high", "reform_block"};
+  const base::test::TextFile base("base.toml", kBase);
+  const std::string path = (std::filesystem::path(base.path()).parent_path() / "derived.toml").string();
+  std::ofstream(path) << text;
+  read_rule_set(path, book);
+  return book;
+}
+
+std::string error_with_base(const std::string& text) {
+  try {
+    book_with_base(text);
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Base, IsTakenOverReplacedAndLeftOut) {
+  const RuleSets book = book_with_base(R"(
+base = "base"
+without = ["near water"]
+[[rule]]
+name = "rows"
+which.position = "mid_row"
+preset = "c"
+[prior]
+substyle = { reform_block = 1 }
+storeys = { slab = 8 }
+)");
+  ASSERT_EQ(book.sets.size(), 1u);
+  const RuleSet& set = book.sets[0];
+  EXPECT_EQ(set.name, "derived");
+  EXPECT_EQ(set.title, "derived") << "a title is not taken over";
+  ASSERT_EQ(set.bases.size(), 1u);
+  EXPECT_THAT(set.bases[0], testing::EndsWith("base.toml"));
+  ASSERT_EQ(set.rules.size(), 2u);
+  EXPECT_EQ(set.rules[0].name, "rows");
+  EXPECT_THAT(set.rules[0].file, testing::EndsWith("derived.toml"));
+  EXPECT_EQ(set.rules[1].name, "usual");
+  EXPECT_THAT(set.rules[1].file, testing::EndsWith("base.toml"));
+  EXPECT_TRUE(set.queries.empty()) << "nobody asks for what only a rule that is left out asked for";
+  EXPECT_EQ(preset_of(book, house()), "c");
+  Subject free_standing = house();
+  free_standing.position = model::BuildingPosition::free_standing;
+  EXPECT_EQ(preset_of(book, free_standing), "a");
+  const Priors& p = set.prior;
+  ASSERT_TRUE(p.style && p.era);
+  EXPECT_THAT(*p.style, ElementsAre(0.25, 0, 0.75, 0));
+  EXPECT_EQ(p.substyle.size(), 1u) << "shares are replaced whole";
+  EXPECT_TRUE(p.absent.empty()) << "a sub-style with a share is not absent";
+  EXPECT_EQ(p.storeys.at("slab"), 8);
+  EXPECT_EQ(p.storeys.at("terrace"), 2) << "storeys are replaced one by one";
+}
+
+TEST(Base, ItsQueriesAndPresetsServeEverySetThatHasIt) {
+  RuleSets book = book_with_base("base = \"base\"\ntitle = \"D\"\n");
+  ASSERT_EQ(book.sets[0].queries.size(), 1u);
+  EXPECT_THAT(book.sets[0].queries[0].asked_in, testing::EndsWith("base.toml"));
+  const auto asking = std::find_if(book.sets[0].rules.begin(), book.sets[0].rules.end(),
+                                   [](const Rule& r) { return r.name == "near water"; });
+  ASSERT_NE(asking, book.sets[0].rules.end());
+  EXPECT_THAT(asking->where.queries, ElementsAre(0u));
+  EXPECT_NE(find_preset(book.presets, "mine"), kNoPreset);
+
+  // The base read before, after, and by two sets: its presets stand once.
+  RuleSets both;
+  for (const char* name : {"a", "b", "c"}) both.presets.push_back({name, "one", model::StyleClass::gruenderzeit, {}});
+  const base::test::TextFile base("base.toml", kBase);
+  const std::filesystem::path folder = std::filesystem::path(base.path()).parent_path();
+  std::ofstream(folder / "x.toml") << "base = \"base.toml\"\n";
+  std::ofstream(folder / "y.toml") << "base = \"x\"\n";
+  for (const char* name : {"x.toml", "base.toml", "y.toml"}) read_rule_set((folder / name).string(), both);
+  EXPECT_EQ(both.presets.size(), 4u);
+  ASSERT_EQ(both.sets.size(), 3u);
+  EXPECT_EQ(both.sets[2].bases.size(), 2u) << "the base of a base counts, too";
+  EXPECT_EQ(both.sets[2].rules.size(), 3u);
+}
+
+TEST(Base, MistakesAreTold) {
+  EXPECT_THAT(error_with_base("base = \"bse\"\n"),
+              AllOf(HasSubstr("derived.toml:1"), HasSubstr("not there"), HasSubstr("bse.toml")));
+  EXPECT_THAT(error_with_base("base = \"derived\"\n"), HasSubstr("leads back"));
+  EXPECT_THAT(error_with_base("base = \"base\"\nwithout = [\"raws\"]\n"),
+              AllOf(HasSubstr("derived.toml:2"), HasSubstr("'raws'"), HasSubstr("Did you mean rows?")));
+  EXPECT_THAT(error_with_base("base = \"base\"\nwithout = [\"rows\"]\n[[rule]]\nname = \"rows\"\npreset = \"a\"\n"),
+              HasSubstr("replaces"));
+  EXPECT_THAT(error_of("without = [\"rows\"]\n[[rule]]\nname = \"r\"\npreset = \"a\"\n"), HasSubstr("there is none"));
+  EXPECT_THAT(error_with_base("base = \"base\"\n[prior]\nabsent = [\"gz_high\"]\n"), HasSubstr("has a share"));
+  EXPECT_THAT(error_with_base("base = \"base\"\n[prior]\nabsent = [\"gz_hih\"]\n"), HasSubstr("Did you mean gz_high?"));
+  // A rule of the set that takes everything from one of the base: both files are named.
+  EXPECT_THAT(error_with_base("base = \"base\"\n[[rule]]\nname = \"all\"\npriority = 9\npreset = \"a\"\n"),
+              AllOf(HasSubstr("base.toml:"), HasSubstr("derived.toml, line 2")));
 }
 
 TEST(Shipped, EveryRuleSetIsReadAndGivesEveryBuildingAPreset) {
