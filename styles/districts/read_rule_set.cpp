@@ -161,7 +161,10 @@ class Reader {
     for (const std::string& file : derived_)
       if (same_file(file, path))
         root.fail("base", "leads back to " + file, "A rule set cannot be its own base; leave one of them out.");
-    RuleSet base = Reader(path, book_, derived_).read(TomlTable::read(path));
+    auto known = book_.bases.find(path);
+    if (known == book_.bases.end())
+      known = book_.bases.emplace(path, Reader(path, book_, derived_).read(TomlTable::read(path))).first;
+    const RuleSet& base = known->second;
     set_.bases.push_back(base.file);
     set_.bases.insert(set_.bases.end(), base.bases.begin(), base.bases.end());
     return base;
@@ -447,8 +450,8 @@ class Reader {
 }  // namespace
 
 void read_rule_set(const std::string& path, RuleSets& book) {
-  TomlTable root = TomlTable::read(path);
-  book.sets.push_back(Reader(path, book).read(std::move(root)));
+  const auto known = book.bases.find(std::filesystem::path(path).lexically_normal().string());
+  book.sets.push_back(known != book.bases.end() ? known->second : Reader(path, book).read(TomlTable::read(path)));
 }
 
 }  // namespace blockrand::districts

@@ -133,6 +133,7 @@ struct RuleSets {
   std::vector<Preset> presets;
   std::vector<std::string> substyles;  ///< ids of the catalogue of styles; empty: names are not checked
   std::vector<RuleSet> sets;
+  std::map<std::string, RuleSet> bases;  ///< read because a set builds on them, by path
 
   /// The set whose polygon holds the place, the smallest where several do; else the one without polygon; kNoSet where
   /// there is none. Exact: whole numbers only.
