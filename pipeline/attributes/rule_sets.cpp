@@ -95,7 +95,7 @@ ReadRuleSets read_rule_sets(const std::string& configs, const std::string& distr
       throw base::UsageError("--districts " + districts + ": there is no such rule set and no such file. " +
                              (near.empty() ? "Known: " + all : "Did you mean " + near + "?"));
     }
-    districts::read_rule_set(file.string(), out.book);
+    districts::read_rule_set(file.string(), out.book, folder.string());
     check_absent(out.book.sets.back(), catalogue);
     out.book.sets.back().polygon.clear();  // who names a set means it for everything
     out.files.emplace_back(named != sets.end() ? "districts/" + file.filename().string() : districts, file.string());

@@ -107,8 +107,11 @@ std::vector<model::Location> ring(TomlTable& table, std::string_view key) {
 class Reader {
  public:
   /// \param derived  files of the sets that have this one as their base, the outermost first
-  Reader(const std::string& path, RuleSets& book, std::vector<std::string> derived = {})
-      : folder_(std::filesystem::path(path).parent_path()), book_(book), derived_(std::move(derived)) {
+  Reader(const std::string& path, RuleSets& book, const std::string& shipped, std::vector<std::string> derived = {})
+      : folder_(std::filesystem::path(path).parent_path()),
+        shipped_(shipped),
+        book_(book),
+        derived_(std::move(derived)) {
     set_.file = path;
     set_.name = std::filesystem::path(path).stem().string();
     derived_.push_back(path);
@@ -154,16 +157,21 @@ class Reader {
     const auto name = name_at(root, "base");
     if (!name) return {};
     const bool is_file = name->ends_with(".toml");
-    const std::string path = (folder_ / (is_file ? *name : *name + ".toml")).lexically_normal().string();
+    std::string path = (folder_ / (is_file ? *name : *name + ".toml")).lexically_normal().string();
     std::error_code error;
+    if (!is_file && !shipped_.empty() && !std::filesystem::is_regular_file(path, error))
+      if (const auto other = std::filesystem::path(shipped_) / (*name + ".toml");
+          std::filesystem::is_regular_file(other, error))
+        path = other.lexically_normal().string();
     if (!std::filesystem::is_regular_file(path, error))
-      root.fail("base", "names a rule set that is not there: " + path, "Paths start at the rule set's folder.");
+      root.fail("base", "names a rule set that is not there: " + path,
+                "Name a shipped set, or a file; paths start at the rule set's folder.");
     for (const std::string& file : derived_)
       if (same_file(file, path))
         root.fail("base", "leads back to " + file, "A rule set cannot be its own base; leave one of them out.");
     auto known = book_.bases.find(path);
     if (known == book_.bases.end())
-      known = book_.bases.emplace(path, Reader(path, book_, derived_).read(TomlTable::read(path))).first;
+      known = book_.bases.emplace(path, Reader(path, book_, shipped_, derived_).read(TomlTable::read(path))).first;
     const RuleSet& base = known->second;
     set_.bases.push_back(base.file);
     set_.bases.insert(set_.bases.end(), base.bases.begin(), base.bases.end());
@@ -441,6 +449,7 @@ class Reader {
   }
 
   std::filesystem::path folder_;
+  std::string shipped_;
   RuleSets& book_;
   std::vector<std::string> derived_;
   RuleSet set_;
@@ -449,9 +458,10 @@ class Reader {
 
 }  // namespace
 
-void read_rule_set(const std::string& path, RuleSets& book) {
+void read_rule_set(const std::string& path, RuleSets& book, const std::string& shipped) {
   const auto known = book.bases.find(std::filesystem::path(path).lexically_normal().string());
-  book.sets.push_back(known != book.bases.end() ? known->second : Reader(path, book).read(TomlTable::read(path)));
+  book.sets.push_back(known != book.bases.end() ? known->second
+                                                : Reader(path, book, shipped).read(TomlTable::read(path)));
 }
 
 }  // namespace blockrand::districts

@@ -20,6 +20,7 @@ inline constexpr double kMaxPlaceRadius = 30000;  ///< m; places are region data
 ///                           maximum, years outside of the eras, a box outside of the set's polygon), weights that are
 ///                           not positive or do not sum to 1, two rules of one name, a rule that can have no effect
 ///                           because stronger ones without conditions take all it gives
-void read_rule_set(const std::string& path, RuleSets& book);
+/// \param shipped  folder where a base is looked for that does not lie beside the set; empty: nowhere
+void read_rule_set(const std::string& path, RuleSets& book, const std::string& shipped = {});
 
 }  // namespace blockrand::districts

@@ -528,6 +528,18 @@ TEST(Base, ItsQueriesAndPresetsServeEverySetThatHasIt) {
   EXPECT_EQ(both.sets[2].rules.size(), 3u);
 }
 
+TEST(Base, IsLookedForBesideTheSetAndThenAmongTheShipped) {
+  RuleSets book;
+  for (const char* name : {"a", "b", "c"}) book.presets.push_back({name, "one", model::StyleClass::gruenderzeit, {}});
+  const base::test::TextFile shipped("base.toml", kBase), mine("mine.toml", "base = \"base\"\n");
+  const std::string folder = std::filesystem::path(shipped.path()).parent_path().string();
+  EXPECT_THROW(read_rule_set(mine.path(), book), base::InputError);
+  read_rule_set(mine.path(), book, folder);
+  ASSERT_EQ(book.sets.size(), 1u);
+  EXPECT_EQ(book.sets[0].bases, std::vector<std::string>{shipped.path()});
+  EXPECT_EQ(book.sets[0].rules.size(), 3u);
+}
+
 TEST(Base, MistakesAreTold) {
   EXPECT_THAT(error_with_base("base = \"bse\"\n"),
               AllOf(HasSubstr("derived.toml:1"), HasSubstr("not there"), HasSubstr("bse.toml")));
