@@ -53,6 +53,7 @@ class ElementLibrary {
   std::vector<std::uint32_t> take_over(ElementLibrary& other);
 
   const model::Element& element(std::uint32_t number) const { return *region_.elements[number].element; }
+  const PartMaterials& materials(std::uint32_t number) const { return region_.elements[number].materials; }
 
  private:
   struct Made {

@@ -180,6 +180,8 @@ const std::vector<ContextAttribute> kAttributes = {
      [](const C& c) -> Value { return c.building.attributes.ground_floor_use.value; }},
     {"building.height", "m", "ground to the top of the roof, of this part",
      [](const C& c) -> Value { return c.part.attributes.height.value; }},
+    {"building.inhabited", "", "a house of people, or an old one of shops and offices: it has hearths and an attic",
+     [](const C& c) -> Value { return c.inhabited; }},
     {"building.min_height", "m", "ground to the underside of this part",
      [](const C& c) -> Value { return c.part.attributes.min_height.value; }},
     {"building.plinth", "m", "ground to the level of the ground floor",
@@ -263,6 +265,14 @@ const std::vector<ContextAttribute> kAttributes = {
      [](const C& c) -> Value { return c.part.attributes.roof_pitch.value; }},
     {"roof.shape", "", "as it was built: flat, gabled, hipped …",
      [](const C& c) -> Value { return text(model::name(c.part.built_roof)); }},
+    {"roof.storeys", "", "attic storeys", [](const C& c) -> Value { return c.part.attributes.roof_storeys.value; }},
+    {"roof.windows_below", "",
+     "for rules of roofs: the kind of window of the topmost storey with windows; empty: the facades have none",
+     [](const C& c) -> Value { return c.windows ? c.windows->kind : std::string(); }},
+    {"roof.windows_below_colour", "", "the same: #rrggbb of their frames",
+     [](const C& c) -> Value { return c.windows ? c.windows->frame_colour : std::string(); }},
+    {"roof.windows_below_width", "m", "the same; 0: the facades have none",
+     [](const C& c) -> Value { return c.windows ? c.windows->width : 0.0; }},
     {"storey.bases", "m", "by storey: the ground floor's level to its floor",
      [](const C& c) -> Value {
        std::vector<double> out;

@@ -13,12 +13,22 @@
 
 namespace blockrand::facades {
 
+/// What fronts on the roof take over from the facades below.
+struct WindowsBelow {
+  std::string kind;                   ///< "double_casement"; empty: no windows
+  double width = 0;                   ///< m, of the topmost storey's
+  std::string frame_colour;           ///< #rrggbb
+};
+
 struct FacadeContext {
   const model::Building& building;
   const model::BuildingPart& part;
   const WallFrame& wall;
   const FacadeSegment& segment;
   double eaves = 0;  ///< m above the height reference, of the part: eaves_level()
+  /// Of the windows that the facades of the part have; null before they are laid out.
+  const WindowsBelow* windows = nullptr;
+  bool inhabited = false;  ///< has_hearths()
 };
 
 /// One value that rules may read: "building.storeys". docs/grammar_attributes.md is printed from the list.

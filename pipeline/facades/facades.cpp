@@ -19,9 +19,12 @@
 #include "pipeline/facades/facade_context.h"
 #include "pipeline/facades/opening_proof.h"
 #include "pipeline/facades/openings.h"
+#include "pipeline/facades/bodies_on_roofs.h"
 #include "pipeline/facades/passages.h"
+#include "pipeline/facades/roof_elements.h"
 #include "pipeline/facades/wall_corners.h"
 #include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/triangulate.h"
 #include "styles/elements/make_element.h"
 #include "styles/grammar/shapes/scope.h"
@@ -50,13 +53,15 @@ struct Asked {
 class FacadeBuilder {
  public:
   FacadeBuilder(model::Report& report, ElementLibrary& library, const GrammarLibrary& grammars,
-                const FacadeOptions& options)
-      : report_(report), library_(library), grammars_(grammars), options_(options) {}
+                const attributes::Defaults& defaults, const FacadeOptions& options)
+      : report_(report), library_(library), grammars_(grammars), defaults_(defaults), options_(options) {}
 
-  void build(model::Building& building, BuildingPart& part) {
+  /// \param mass  the roof that the part's LoD2 has; gets what is built on it. Null: nothing is
+  void build(model::Building& building, BuildingPart& part, masses::BuiltMass* mass) {
     if (part.lod < 2 || part.lod2.empty() || part.canopy) return;
     const GrammarLibrary::Entry* grammar = grammars_.find(building.attributes.preset.value);
     if (!grammar) return;
+    closed_ = {&part.lod2, &part.lod2_triangles};
     std::vector<WallFrame> walls;
     for (std::uint32_t f = 0; f < part.lod2.faces.size(); ++f)
       if (auto wall = wall_frame(part.lod2, f)) walls.push_back(std::move(*wall));
@@ -84,10 +89,185 @@ class FacadeBuilder {
         continue;
       derive_segment(*grammar, {building, part, walls[segment.wall], segment, eaves}, seed, row);
     }
+    furnished_.reset();
+    if (mass && grammar->roof && main_body(building) == &part) {
+      furnish(*grammar, building, part, *mass, walls, segments, eaves, seed, row);
+      if (furnished_) {
+        closed_ = {&furnished_->solid, &furnished_->triangles};
+        checked_portals_.clear();  // of another body
+      }
+    }
     cut(part, walls);
+    if (furnished_) {
+      mass->roof = std::move(furnished_->roof);
+      part.lod3.roof_elements = mass->roof.elements;
+    }
   }
 
  private:
+  /// The body that openings are cut into.
+  struct Closed {
+    const model::Solid* solid = nullptr;
+    const model::SolidTriangles* triangles = nullptr;
+  };
+
+  /// Dormers and cross gables on the roof, windows in their fronts and in gables.
+  /// \param walls  of the LoD2 solid; becomes those of the furnished one, which begin with them
+  void furnish(const GrammarLibrary::Entry& grammar, const model::Building& building, BuildingPart& part,
+               const masses::BuiltMass& mass, std::vector<WallFrame>& walls, const std::vector<FacadeSegment>& segments,
+               double eaves, std::uint64_t seed, std::uint64_t row) {
+    if (segments.empty()) return;
+    WindowsBelow windows = windows_below();
+    // The values are those of the building: the segment that rules see is its main front, else its first wall.
+    const FacadeSegment* front = &segments.front();
+    for (const FacadeSegment& s : segments)
+      if (s.kind == model::WallSegmentKind::street && (front->kind != s.kind || s.length() > front->length())) front = &s;
+    const bool inhabited = has_hearths(building.attributes, defaults_);
+    FacadeContext context{building, part, walls[front->wall], *front, eaves, &windows, inhabited};
+    const grammar::Derivation values = derive_roof(grammar, context, "Roof", {}, seed, row);
+    std::vector<std::string> complaints;
+    const RoofOrders orders = read_roof_orders(values.attributes, complaints);
+    for (const std::string& complaint : complaints) tell(complaint);
+    const std::vector<model::RoofEdge> edges = edges_of_plan(building, part, mass.plan);
+    std::vector<WindowAxes> axes = window_axes(walls, part);
+    furnished_ = furnish_roof(building, part, mass, edges, axes, orders);
+    if (furnished_ && furnished_->left_out > 0) {
+      part.fallbacks.push_back(IssueCode::roof_element_left_out);
+      report_.add(part.osm, IssueCode::roof_element_left_out, fmt::format("dormers, cross gables: {}", furnished_->left_out));
+    }
+    if (furnished_ && furnished_->fronts.empty()) furnished_.reset();
+    if (furnished_) {
+      walls.clear();
+      for (std::uint32_t f = 0; f < furnished_->solid.faces.size(); ++f)
+        if (auto wall = wall_frame(furnished_->solid, f)) walls.push_back(std::move(*wall));
+    }
+    const std::size_t below = asked_.size();
+    if (furnished_)
+      for (const RoofFront& f : furnished_->fronts) derive_front(grammar, context, walls, segments, f, seed, row);
+    for (const FacadeSegment& s : segments) derive_gable(grammar, context, walls, s, seed, row);
+    keep_within(walls, below);
+  }
+
+  /// What fronts on the roof take over from the windows asked for: those of the topmost storey.
+  WindowsBelow windows_below() const {
+    WindowsBelow out;
+    std::int32_t top = -1;
+    for (std::size_t i = portal_elements_; i < asked_.size(); ++i) {
+      const model::Element& element = library_.element(asked_[i].element);
+      if (element.semantic != model::ElementClass::window || element.opening.outline.empty() || asked_[i].storey <= top)
+        continue;
+      if (element.kind == "shop_window" && !out.kind.empty()) continue;
+      top = asked_[i].storey;
+      out.kind = element.kind;
+      out.width = width_of(element);
+      out.frame_colour = model::text(library_.materials(asked_[i].element)[static_cast<std::size_t>(model::ElementPart::frame)].colour);
+    }
+    return out;
+  }
+
+  static double width_of(const model::Element& element) {
+    double low = 1e300, high = -1e300;
+    for (const Point2& p : element.opening.outline) low = std::min(low, p.x), high = std::max(high, p.x);
+    return high - low;
+  }
+
+  /// Middles of the windows of each wall, on the plan.
+  std::vector<WindowAxes> window_axes(const std::vector<WallFrame>& walls, const BuildingPart& part) const {
+    std::vector<WindowAxes> out;
+    for (const Asked& asked : asked_) {
+      const model::Element& element = library_.element(asked.element);
+      if (element.semantic != model::ElementClass::window || element.opening.outline.empty()) continue;
+      const std::int32_t edge = part.lod2.faces[walls[asked.wall].face].edge;
+      if (edge < 0) continue;
+      auto of = std::find_if(out.begin(), out.end(), [&](const WindowAxes& a) { return a.edge == edge; });
+      if (of == out.end()) of = out.insert(out.end(), WindowAxes{edge, {}});
+      of->places.push_back(walls[asked.wall].at({asked.at.x, 0}).xy());
+    }
+    return out;
+  }
+
+  /// Runs a rule of the rules for roofs.
+  grammar::Derivation derive_roof(const GrammarLibrary::Entry& grammar, const FacadeContext& context, const char* rule,
+                                  const grammar::Shape& shape, std::uint64_t seed, std::uint64_t row,
+                                  std::string_view place = {}) {
+    grammar::DeriveOptions options;
+    options.start_rule = rule;
+    options.seed = base::random_bits(seed, base::hash_text(fmt::format("{}/{}/{}", context.part.id, rule, place)), "roof");
+    options.building_seed = seed;
+    options.row_seed = row;
+    for (const auto& [name, value] : parameters_) options.attributes.emplace_back(name, value);
+    options.attributes.insert(options.attributes.end(), grammar.attributes.begin(), grammar.attributes.end());
+    options.source = [&](std::string_view name) { return context_value(context, name); };
+    options.limits.shapes = options_.most_shapes;
+    options.orders_only = shape.mesh != nullptr;
+    grammar::Derivation out = grammar.roof->run(shape, options);
+    for (const grammar::Diagnostic& d : out.diagnostics)
+      if (d.severity == grammar::Severity::error) tell(d.message);
+    return out;
+  }
+
+  /// Windows of a dormer or cross gable: rules see the front alone, from its lower border.
+  void derive_front(const GrammarLibrary::Entry& grammar, const FacadeContext& main, const std::vector<WallFrame>& walls,
+                    const std::vector<FacadeSegment>& segments, const RoofFront& front, std::uint64_t seed,
+                    std::uint64_t row) {
+    const auto wall = std::find_if(walls.begin(), walls.end(), [&](const WallFrame& w) { return w.face == front.face; });
+    if (wall == walls.end()) return;
+    const double middle = (front.middle.x - wall->start.x) * wall->along.x + (front.middle.y - wall->start.y) * wall->along.y;
+    FacadeSegment piece;
+    piece.wall = static_cast<std::uint32_t>(wall - walls.begin());
+    piece.from = std::max(0.0, middle - front.width / 2);
+    piece.to = std::min(wall->length, middle + front.width / 2);
+    piece.kind = model::WallSegmentKind::unknown;
+    // It looks where the wall below looks.
+    for (const FacadeSegment& s : segments)
+      if (walls[s.wall].face == static_cast<std::uint32_t>(front.edge) + 1 &&
+          (piece.kind == model::WallSegmentKind::unknown || s.kind == model::WallSegmentKind::street))
+        piece.kind = s.kind, piece.edges = s.edges;
+    const char* rule = front.kind == model::RoofElementKind::dormer ? "DormerFront" : "CrossGableFront";
+    derive_piece(grammar, main, *wall, piece, std::max(0.0, front.foot - wall->base), rule, seed, row);
+  }
+
+  /// Windows in a wall above its eaves.
+  void derive_gable(const GrammarLibrary::Entry& grammar, const FacadeContext& main, const std::vector<WallFrame>& walls,
+                    const FacadeSegment& segment, std::uint64_t seed, std::uint64_t row) {
+    const WallFrame& wall = walls[segment.wall];
+    const double foot = std::clamp(main.eaves - wall.base, 0.0, wall.height);
+    if (segment.kind == model::WallSegmentKind::party_wall || wall.height - foot < kLeastGable) return;
+    // Of a front with cross gables those alone rise above the eaves.
+    if (furnished_)
+      for (const RoofFront& f : furnished_->fronts)
+        if (f.kind == model::RoofElementKind::cross_gable && f.face == wall.face) return;
+    derive_piece(grammar, main, wall, segment, foot, "Gable", seed, row);
+  }
+
+  void derive_piece(const GrammarLibrary::Entry& grammar, const FacadeContext& main, const WallFrame& wall,
+                    const FacadeSegment& piece, double foot, const char* rule, std::uint64_t seed, std::uint64_t row) {
+    grammar::Shape shape = wall_shape(wall);
+    if (piece.from > 0 || piece.to < wall.length) shape = grammar::cut_piece(shape, 0, piece.from, piece.to, false);
+    if (foot > 0) shape = grammar::cut_piece(shape, 1, foot, wall.height, false);
+    if (!shape.mesh || shape.mesh->faces.empty()) return;
+    FacadeContext context{main.building, main.part, wall, piece, main.eaves, main.windows, main.inhabited};
+    const std::string place = fmt::format("{}/{}", wall.face, static_cast<int>(std::floor(piece.from * 16)));
+    for (const grammar::Leaf& leaf : derive_roof(grammar, context, rule, shape, seed, row, place).leaves)
+      if (leaf.order) take(context, leaf);
+  }
+
+  /// Of windows on the roof those go that do not fit in their front: rules order rows of them, as many as a rectangle takes.
+  void keep_within(const std::vector<WallFrame>& walls, std::size_t first) {
+    const auto outside = [&](const Asked& asked) {
+      const model::Element& element = library_.element(asked.element);
+      const auto& outer = walls[asked.wall].loops[0];
+      for (const Point2& p : element.opening.outline) {
+        const Point2 q{p.x + asked.at.x, p.y + asked.at.y};
+        if (!geometry::contains(outer, q)) return true;
+        for (std::size_t i = 0; i < outer.size(); ++i)
+          if (geometry::distance_to_segment(q, outer[i], outer[(i + 1) % outer.size()]) < kFrontBorder) return true;
+      }
+      return false;
+    };
+    asked_.erase(std::remove_if(asked_.begin() + static_cast<std::ptrdiff_t>(first), asked_.end(), outside), asked_.end());
+  }
+
   void derive_segment(const GrammarLibrary::Entry& grammar, const FacadeContext& context, std::uint64_t seed,
                       std::uint64_t row) {
     const WallFrame& wall = context.wall;
@@ -316,7 +496,7 @@ class FacadeBuilder {
   };
 
   /// Cuts passages and what elements need; none when the solid is not valid then.
-  std::optional<Cut> cut_all(const BuildingPart& part, const std::vector<WallFrame>& walls) const {
+  std::optional<Cut> cut_all(const std::vector<WallFrame>& walls) const {
     Cut out;
     std::vector<WallOpening> openings = passage_openings();
     out.of_asked.assign(openings.size(), kNoAsked);
@@ -332,8 +512,9 @@ class FacadeBuilder {
       openings.push_back(std::move(o));
       out.of_asked.push_back(i);
     }
-    out.opened = cut_openings(part.lod2, walls, openings, rounding_);
-    auto triangles = geometry::triangulate(out.opened.solid, part.lod2, part.lod2_triangles, out.opened.triangles);
+    out.opened = cut_openings(*closed_.solid, walls, openings, rounding_);
+    auto triangles =
+        geometry::triangulate(out.opened.solid, *closed_.solid, *closed_.triangles, out.opened.triangles);
     const bool passages_checked = !checked_portals_.empty() && checked_portals_ == open_portals();
     if (!triangles || !(proved_valid(out.opened, *triangles, passages_checked) ||
                         geometry::check_solid(out.opened.solid, *triangles, geometry::kBuilt).valid()))
@@ -348,19 +529,19 @@ class FacadeBuilder {
     const auto is_open = [](const PassagePortal& m) { return m.state == PortalState::open; };
     const bool passages = std::any_of(portals_.begin(), portals_.end(), is_open);
     if (asked_.empty() && !passages) {  // walls without openings are a facade, too
-      detail.solid = part.lod2;
-      detail.triangles = part.lod2_triangles;
+      detail.solid = *closed_.solid;
+      detail.triangles = *closed_.triangles;
       finish_told(part, 0);
       return;
     }
-    std::optional<Cut> made = cut_all(part, walls);
+    std::optional<Cut> made = cut_all(walls);
     if (!made && passages) {
       const std::vector<Asked> rest(asked_.begin() + static_cast<std::ptrdiff_t>(portal_elements_), asked_.end());
       asked_.clear();
       close_open(PortalState::not_valid);
       close_portals();
       asked_.insert(asked_.end(), rest.begin(), rest.end());
-      made = cut_all(part, walls);
+      made = cut_all(walls);
     }
     std::vector<std::uint32_t> opening_of(asked_.size(), model::kNoOpening);
     std::vector<bool> refused(asked_.size(), false);
@@ -378,8 +559,8 @@ class FacadeBuilder {
       report_.add(part.osm, IssueCode::facade_failed, part.id);
       for (std::size_t i = 0; i < asked_.size(); ++i)
         refused[i] = !library_.element(asked_[i].element).opening.outline.empty();
-      detail.solid = part.lod2;
-      detail.triangles = part.lod2_triangles;
+      detail.solid = *closed_.solid;
+      detail.triangles = *closed_.triangles;
     }
     std::size_t left_out = 0;
     for (std::size_t i = 0; i < asked_.size(); ++i) {
@@ -418,12 +599,17 @@ class FacadeBuilder {
   void tell(const std::string& what) { told_.insert(what); }
 
   static constexpr std::size_t kNoAsked = ~std::size_t{0};
+  /// m. Lower gables have no windows.
+  static constexpr double kLeastGable = 1.6;
+  /// m of wall around windows of dormers and gables.
+  static constexpr double kFrontBorder = 0.08;
   /// m; narrower portals get a house door.
   static constexpr double kLeastGate = 1.8;
 
   model::Report& report_;
   ElementLibrary& library_;
   const GrammarLibrary& grammars_;
+  const attributes::Defaults& defaults_;
   const FacadeOptions& options_;
   CornerRounding rounding_ = CornerRounding::nearest;  ///< of the part at work
   grammar::DeriveOptions derive_options_;
@@ -442,12 +628,14 @@ class FacadeBuilder {
   PartMaterials usual_materials_;  ///< of the part at work
   std::vector<std::string> complaints_;
   std::vector<std::pair<double, double>> pieces_;
+  Closed closed_;                          ///< of the part at work
+  std::optional<FurnishedRoof> furnished_;  ///< the same, with dormers and cross gables; none: it has none
 };
 
 }  // namespace
 
 void build_facades(model::Region& region, const GrammarLibrary& grammars, const attributes::Defaults& defaults,
-                   const FacadeOptions& options) {
+                   const FacadeOptions& options, masses::BuiltMasses* masses) {
   // Buildings of a stretch are built by themselves; their elements become those of the region in the order of the stretches, as if there
   // had been one.
   struct Stretch {
@@ -459,13 +647,14 @@ void build_facades(model::Region& region, const GrammarLibrary& grammars, const 
   base::share(stretches.size(), [&](std::size_t i) {
     Stretch& stretch = stretches[i];
     stretch.library = std::make_unique<ElementLibrary>(stretch.made, defaults);
-    FacadeBuilder builder(stretch.made.report, *stretch.library, grammars, options);
+    FacadeBuilder builder(stretch.made.report, *stretch.library, grammars, defaults, options);
     for (std::size_t b = begins[i]; b < begins[i + 1]; ++b) {
       model::Building& building = region.buildings[b];
       if (!building.owned) continue;
       for (const std::string& order : unread_overrides(building))
         stretch.made.report.add(building.osm, IssueCode::override_unmatched, order);
-      for (BuildingPart& part : building.parts) builder.build(building, part);
+      for (std::uint32_t p = 0; p < building.parts.size(); ++p)
+        builder.build(building, building.parts[p], masses ? masses->find({static_cast<std::uint32_t>(b), p}) : nullptr);
     }
   });
   ElementLibrary library(region, defaults);

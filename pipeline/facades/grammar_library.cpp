@@ -17,6 +17,8 @@ namespace {
 
 /// Characters; the rest of the errors would not be read.
 constexpr std::size_t kMostErrorText = 2000;
+/// Rules for the roofs of presets that name none.
+constexpr const char* kUsualRoofRules = "roofscape.cga";
 
 std::optional<std::string> read_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -85,8 +87,8 @@ GrammarLibrary::GrammarLibrary(const std::string& folder, std::span<const Preset
   grammar::CheckOptions check_options;
   check_options.extensions = extension_operations();
   for (const ContextAttribute& attribute : context_attributes()) check_options.context.emplace_back(attribute.name);
-  for (const PresetGrammar& preset : presets) {
-    const std::string path = (std::filesystem::path(folder) / preset.file).string();
+  const auto deriver_of = [&](const std::string& name) {
+    const std::string path = (std::filesystem::path(folder) / name).string();
     auto file = std::find_if(files_.begin(), files_.end(), [&](const auto& f) { return f->path == path; });
     if (file == files_.end()) {
       auto read = std::make_unique<File>();
@@ -104,10 +106,14 @@ GrammarLibrary::GrammarLibrary(const std::string& folder, std::span<const Preset
       files_.push_back(std::move(read));
       file = files_.end() - 1;
     }
+    return &*(*file)->deriver;
+  };
+  for (const PresetGrammar& preset : presets) {
     Entry entry;
     entry.preset = preset.preset;
     entry.file = preset.file;
-    entry.deriver = &*(*file)->deriver;
+    entry.deriver = deriver_of(preset.file);
+    if (!preset.roof_file.empty()) entry.roof = deriver_of(preset.roof_file);
     for (const auto& [name, value] : preset.attributes) entry.attributes.emplace_back(name, value);
     entries_.push_back(std::move(entry));
   }
@@ -128,7 +134,7 @@ std::vector<std::string> GrammarLibrary::files_of(std::string_view preset) const
   std::set<std::string> out;
   const Entry* entry = find(preset);
   for (const auto& file : files_)
-    if (entry && &*file->deriver == entry->deriver)
+    if (entry && (&*file->deriver == entry->deriver || &*file->deriver == entry->roof))
       for (const grammar::SourceFile& source : file->program.files) out.insert(source.path);
   return {out.begin(), out.end()};
 }
@@ -140,10 +146,15 @@ const GrammarLibrary::Entry* GrammarLibrary::find(std::string_view preset) const
 }
 
 GrammarLibrary read_grammars(const std::string& configs, std::span<const districts::Preset> presets) {
+  const std::filesystem::path folder = std::filesystem::path(configs) / "grammars";
+  // A folder of rules of one's own may do without.
+  const bool usual = std::filesystem::exists(folder / kUsualRoofRules);
   std::vector<PresetGrammar> grammars;
-  for (const districts::Preset& preset : presets)
-    if (!preset.grammar.empty()) grammars.push_back({preset.name, preset.grammar, preset.attributes});
-  return {(std::filesystem::path(configs) / "grammars").string(), grammars};
+  for (const districts::Preset& preset : presets) {
+    if (preset.grammar.empty()) continue;
+    grammars.push_back({preset.name, preset.grammar, preset.attributes, preset.roof_grammar.value_or(usual ? kUsualRoofRules : "")});
+  }
+  return {folder.string(), grammars};
 }
 
 }  // namespace blockrand::facades

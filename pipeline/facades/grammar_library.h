@@ -26,6 +26,7 @@ struct PresetGrammar {
   std::string preset;
   std::string file;  ///< below the folder of grammars
   std::vector<std::pair<std::string, std::string>> attributes;
+  std::string roof_file{};  ///< the same, what stands on its roof; empty: no dormers, cross gables, ornamental gables
 };
 
 /// The grammars of all presets. Immutable once made; used by all threads.
@@ -35,7 +36,8 @@ class GrammarLibrary {
     std::string preset;
     std::string file;  ///< below the folder of grammars
     const grammar::Deriver* deriver = nullptr;
-    std::vector<std::pair<std::string, grammar::Value>> attributes;
+    const grammar::Deriver* roof = nullptr;  ///< of the rules for roofs; null: there are none
+    std::vector<std::pair<std::string, grammar::Value>> attributes;  ///< of both
   };
 
   /// Reads each file once. \param folder  of the rule files; imports are looked for there as well

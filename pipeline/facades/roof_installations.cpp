@@ -32,8 +32,6 @@ using model::Point3;
 
 /// m². Smaller bodies are sheds, porches and stair heads.
 constexpr double kLeastPlan = 30;
-/// Share of a body's plan under higher bodies from which on its roof is theirs to stand on (own choice).
-constexpr double kCovered = 0.5;
 /// m of frontage for each chimney: with a stove in every room; with one for each flat; with one for each house.
 constexpr double kStoves = 6, kStovesOfFlats = 12, kBoilers = 18;
 /// Share of detached houses of after 1945 that have a chimney (docs/style_measures.md §6).
@@ -77,14 +75,14 @@ class RoofInstaller {
   void furnish(model::Building& building, std::uint32_t index, model::Report& report) {
     left_out_ = {};
     BuildingPart* const body = main_body(building);
-    if (!body) return;
-    if (!has_hearths(building.attributes)) return;
+    if (!body || body->lod < 3 || body->lod3.solid.empty()) return;
+    if (!has_hearths(building.attributes, defaults_)) return;
     const double area = geometry::area(body->roof_plan.outer.size() >= 3 ? body->roof_plan : body->plan);
     if (!(area >= kLeastPlan)) return;
     const masses::BuiltMass* const standing =
         masses_.find({index, static_cast<std::uint32_t>(body - building.parts.data())});
     if (!standing) return;
-    const std::vector<model::RoofEdge> edges = edges_of(building, *body, standing->plan);
+    const std::vector<model::RoofEdge> edges = edges_of_plan(building, *body, standing->plan);
     const double width = building.situation.width.value_or(0);
     const double frontage = width > 0 ? width : std::sqrt(area);
     const std::vector<Point2> stacks = put_chimneys(building, *body, *standing, edges, frontage);
@@ -100,71 +98,12 @@ class RoofInstaller {
     return base::random_unit(options_.seed, building.osm.key(), choice);
   }
 
-  /// Houses of people, and old houses of shops and offices; no churches, halls and sheds.
-  bool has_hearths(const model::Attributes& a) const {
-    const std::string& group = defaults_.groups[defaults_.use(a.use.value).group];
-    return group == "residential" || ((group == "commercial" || group == "public" || group == "other") && is_old(a) &&
-                                      a.style.value != model::name(model::StyleClass::other));
-  }
-
-  /// m above the height reference.
-  struct Extent {
-    double low = 0, high = 0;
-  };
-  static Extent extent_of(const model::Solid& solid) {
-    Extent out{1e300, -1e300};
-    for (const Point3& p : solid.vertices) out = {std::min(out.low, p.z), std::max(out.high, p.z)};
-    return out;
-  }
-  /// Of what was built; as its tags say where nothing was.
-  static Extent extent_of(const BuildingPart& part) {
-    if (!part.lod2.empty()) return extent_of(part.lod2);
-    if (!part.lod1.empty()) return extent_of(part.lod1);
-    const model::Attributes& a = part.attributes;
-    return {a.ground_height.value + a.min_height.value, a.ground_height.value + a.height.value};
-  }
-
-  /// Whether higher bodies of the building cover half of it: a podium under a tower.
-  static bool covered(const model::Building& building, const BuildingPart& part, double area) {
-    if (building.parts.size() < 2) return false;
-    const double top = extent_of(part).high;
-    std::vector<model::Polygon> higher;
-    for (const BuildingPart& other : building.parts)
-      if (&other != &part && !other.canopy && !other.lod2.empty() && extent_of(other).high > top)
-        higher.push_back(other.plan);
-    if (higher.empty()) return false;
-    const double common = geometry::PlanShape({part.plan}).common_area(geometry::PlanShape(higher));
-    return common >= kCovered * area;
-  }
-
-  /// The largest body that is not covered from above, where it has LoD3; null for canopies and the like.
-  static BuildingPart* main_body(model::Building& building) {
-    BuildingPart* best = nullptr;
-    double largest = 0;
-    for (BuildingPart& part : building.parts) {
-      if (part.lod2.empty() || part.canopy) continue;
-      const double area = geometry::area(part.plan);
-      if (area > largest && !covered(building, part, area)) best = &part, largest = area;
-    }
-    return best && best->lod >= 3 && !best->lod3.solid.empty() ? best : nullptr;
-  }
-
-  static std::vector<model::RoofEdge> edges_of(const model::Building& building, const BuildingPart& body,
-                                               const model::Polygon& plan) {
-    std::size_t count = plan.outer.size();
-    for (const model::Ring& hole : plan.holes) count += hole.size();
-    if (body.roof_edges.size() == count && plan.outer.points == body.roof_plan.outer.points) return body.roof_edges;
-    auto edges = attributes::roof_edges(building, plan);
-    edges.resize(count, model::RoofEdge::open);
-    return edges;
-  }
-
   /// Whether another body of the building is where it would stand.
   static bool in_another(const model::Building& building, const BuildingPart& body, const model::Solid& solid) {
-    const Extent mine = extent_of(solid);
+    const HeightExtent mine = extent_of(solid);
     for (const BuildingPart& other : building.parts) {
       if (&other == &body || other.plan.outer.size() < 3) continue;
-      const Extent its = extent_of(other);
+      const HeightExtent its = extent_of(other);
       if (its.high <= mine.low || its.low >= mine.high) continue;
       for (const Point3& p : solid.vertices)
         if (geometry::contains(other.plan, p.xy())) return true;

@@ -75,4 +75,8 @@ const BuiltMass* BuiltMasses::find(BodyIndex body) const {
   return place != entries_.end() && place->body == body ? &place->mass : nullptr;
 }
 
+BuiltMass* BuiltMasses::find(BodyIndex body) {
+  return const_cast<BuiltMass*>(static_cast<const BuiltMasses&>(*this).find(body));
+}
+
 }  // namespace blockrand::masses

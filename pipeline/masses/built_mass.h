@@ -30,7 +30,7 @@ struct BodyIndex {
   friend auto operator<=>(const BodyIndex&, const BodyIndex&) = default;
 };
 
-/// What build_masses() hands on of a tile's bodies. Made once; lives as long as stages of that tile ask for it.
+/// What build_masses() hands on of a tile's bodies; lives as long as stages of that tile ask for it.
 class BuiltMasses {
  public:
   struct Entry {
@@ -42,6 +42,8 @@ class BuiltMasses {
   explicit BuiltMasses(std::vector<Entry> entries);
   /// Null for bodies without a LoD2 solid.
   const BuiltMass* find(BodyIndex body) const;
+  /// The same. LoD3 puts dormers and cross gables on its roof; for one thread a body.
+  BuiltMass* find(BodyIndex body);
 
  private:
   std::vector<Entry> entries_;

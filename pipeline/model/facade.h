@@ -57,11 +57,14 @@ struct WallInstallation {
 
 /// LoD3 of a body.
 struct Detail {
-  Solid solid;  ///< the LoD2 solid with its openings; faces of LoD2 come first, in their order
+  /// The LoD2 solid with dormers, cross gables and openings. Faces of LoD2 come first, in their order, then those of dormers and
+  /// cross gables, then reveals and what closes openings.
+  Solid solid;
   SolidTriangles triangles;
   std::vector<Opening> openings;
   std::vector<Placement> placements;
   std::vector<WallInstallation> installations;
+  std::vector<RoofElementKind> roof_elements;  ///< dormers and cross gables that the solid has, in the order they were built
   std::vector<RoofInstallation> roof_installations;  ///< chimneys, roof windows, with their triangles
 };
 

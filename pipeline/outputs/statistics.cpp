@@ -74,6 +74,8 @@ TileStatistics count_statistics(const model::Region& region) {
           s.windows += opening.kind == model::OpeningKind::window;
           s.doors += opening.kind == model::OpeningKind::door;
         }
+        for (const model::RoofElementKind kind : part.lod3.roof_elements)
+          ++(kind == model::RoofElementKind::dormer ? s.dormers : s.cross_gables);
         for (const model::Placement& p : part.lod3.placements) s.placements += shown.at(p.element);
         s.installations += part.lod3.installations.size() + part.lod3.roof_installations.size();
       }
@@ -103,6 +105,8 @@ void add(Statistics& sum, const Statistics& s) {
   sum.solids_lod3 += s.solids_lod3;
   sum.windows += s.windows;
   sum.doors += s.doors;
+  sum.dormers += s.dormers;
+  sum.cross_gables += s.cross_gables;
   sum.placements += s.placements;
   sum.installations += s.installations;
   for (std::size_t k = 0; k < s.edges.size(); ++k) {

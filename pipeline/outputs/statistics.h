@@ -24,6 +24,7 @@ struct Statistics {
   std::uint64_t bodies = 0;     ///< parts, rests of outlines, and buildings without parts
   std::uint64_t solids_lod1 = 0, solids_lod2 = 0, solids_lod3 = 0;
   std::uint64_t windows = 0, doors = 0;                                  ///< polygons of openings in LoD3 solids
+  std::uint64_t dormers = 0, cross_gables = 0;                           ///< that LoD3 solids have
   std::uint64_t placements = 0;                                          ///< elements placed in and on walls
   std::uint64_t installations = 0;                                       ///< bodies of their own on walls and roofs
   std::map<std::string, std::map<std::string, std::uint64_t>> sources;   ///< attribute → source → parts

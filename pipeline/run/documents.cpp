@@ -67,6 +67,8 @@ Json counts_json(const BuildRecord& r) {
                  {"solids_lod3", r.statistics.solids_lod3},
                  {"windows", r.statistics.windows},
                  {"doors", r.statistics.doors},
+                 {"dormers", r.statistics.dormers},
+                 {"cross_gables", r.statistics.cross_gables},
                  {"placements", r.statistics.placements},
                  {"installations", r.statistics.installations},
                  {"old_style_multipolygons", r.counts.old_style_multipolygons},

@@ -19,6 +19,7 @@ Preset read_preset(const std::string& name, base::TomlTable table) {
   preset.style = static_cast<model::StyleClass>(found - model::kStyleClassNames.begin());
   preset.substyles = table.texts("substyles").value_or(std::vector<std::string>{});
   preset.grammar = table.text("grammar").value_or("");
+  preset.roof_grammar = table.text("roof_grammar");
   if (auto values = table.table("attributes")) {
     for (const std::string& key : values->keys()) preset.attributes.emplace_back(key, values->text(key).value_or(""));
     values->finish();

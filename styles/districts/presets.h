@@ -1,6 +1,7 @@
 // The presets that rules may name: configs/styles/presets.toml.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +20,9 @@ struct Preset {
   model::StyleClass style = model::StyleClass::other;
   std::vector<std::string> substyles;  ///< ids of the catalogue of styles that it is meant for
   std::string grammar{};               ///< rule file below configs/grammars; empty: its walls stay closed
-  std::vector<std::pair<std::string, std::string>> attributes{};  ///< values of the rule file's attributes, by name
+  /// The same for what stands on its roof; none: the usual one (roofscape.cga); empty: nothing stands there.
+  std::optional<std::string> roof_grammar{};
+  std::vector<std::pair<std::string, std::string>> attributes{};  ///< values of the rule files' attributes, by name
   std::string declared_in{};  ///< file of the rule set; empty: of the list of presets
 };
 

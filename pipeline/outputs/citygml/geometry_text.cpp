@@ -33,7 +33,7 @@ bool is_shared_face(const model::Solid& lod2, const model::Solid& lod3, std::siz
 }
 
 std::vector<std::vector<std::size_t>> reveals_by_wall(const model::Solid& lod2, const model::Detail& detail) {
-  std::vector<std::vector<std::size_t>> out(lod2.faces.size());
+  std::vector<std::vector<std::size_t>> out(std::max(lod2.faces.size(), detail.solid.faces.size()));
   for (const model::Opening& opening : detail.openings) {
     if (opening.kind == model::OpeningKind::passage) continue;
     for (std::uint32_t i = 0; i < opening.reveal_count; ++i) out[opening.wall].push_back(opening.first_reveal + i);
@@ -187,18 +187,24 @@ void GeometryText::surfaces(const model::Solid& lod2, const model::Detail& detai
                             const SurfaceText& text) {
   const model::Solid& lod3 = detail.solid;
   const std::vector<std::vector<std::size_t>> reveals = reveals_by_wall(lod2, detail);
-  std::vector<std::vector<std::size_t>> openings(lod2.faces.size());  // by wall
+  std::vector<std::vector<std::size_t>> openings(lod3.faces.size());  // by wall
   std::vector<bool> written(lod3.faces.size(), false);
   for (std::size_t o = 0; o < detail.openings.size(); ++o)
     if (detail.openings[o].kind != model::OpeningKind::passage) openings[detail.openings[o].wall].push_back(o);
-  for (std::size_t f = 0; f < lod2.faces.size(); ++f) {
-    const std::string_view name = kSurfaceNames[static_cast<std::size_t>(lod2.faces[f].kind)];
+  // Dormers' fronts are no faces of LoD2; they come before reveals, which so are written with their walls.
+  for (std::size_t f = 0; f < lod3.faces.size(); ++f) {
+    if (written[f]) continue;
+    const std::string_view name = kSurfaceNames[static_cast<std::size_t>(lod3.faces[f].kind)];
     open_surface(name, id, f);
-    text.wall(f);
-    single_surface("lod2MultiSurface", id, f, Mark::polygon);
-    out_ += '\n';
+    if (f < lod2.faces.size()) {
+      text.wall(f);
+      single_surface("lod2MultiSurface", id, f, Mark::polygon);
+      out_ += '\n';
+    }
     written[f] = true;
-    if (is_shared_face(lod2, lod3, f)) {
+    if (f >= lod2.faces.size() && openings[f].empty()) {
+      single_surface("lod3MultiSurface", id, f, Mark::detail);
+    } else if (f < lod2.faces.size() && is_shared_face(lod2, lod3, f)) {
       single_surface("lod3MultiSurface", id, f, Mark::polygon);
     } else {
       out_ += "<bldg:lod3MultiSurface><MultiSurface gml:id=\"";
@@ -227,13 +233,6 @@ void GeometryText::surfaces(const model::Solid& lod2, const model::Detail& detai
       out_ += "></bldg:opening>\n";
       written[face] = true;
     }
-    close_surface(name);
-  }
-  for (std::size_t f = lod2.faces.size(); f < lod3.faces.size(); ++f) {
-    if (written[f]) continue;
-    const std::string_view name = kSurfaceNames[static_cast<std::size_t>(lod3.faces[f].kind)];
-    open_surface(name, id, f);
-    single_surface("lod3MultiSurface", id, f, Mark::detail);
     close_surface(name);
   }
 }

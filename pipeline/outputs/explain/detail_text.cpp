@@ -30,6 +30,7 @@ void add_detail(const model::Region& region, const model::Detail& detail, Detail
   for (const model::Placement& p : detail.placements)
     if (const model::Element& e = *region.elements.at(p.element).element; has_shape(e)) ++counts.elements[e.kind];
   for (const model::WallInstallation& i : detail.installations) ++counts.installations[i.kind];
+  for (const model::RoofElementKind kind : detail.roof_elements) ++counts.roof_elements[model::name(kind)];
   for (const model::RoofInstallation& i : detail.roof_installations) ++counts.installations[model::name(i.kind)];
 }
 
@@ -37,6 +38,7 @@ std::string detail_text(const DetailCounts& counts) {
   std::string text = counted(counts.windows, "window") + ", " + counted(counts.doors, "door");
   if (counts.passages > 0) text += ", " + counted(counts.passages, "passage");
   if (!counts.elements.empty()) text += "; placed " + list(counts.elements);
+  if (!counts.roof_elements.empty()) text += "; in its roof: " + list(counts.roof_elements);
   if (!counts.installations.empty()) text += "; bodies on walls and roofs: " + list(counts.installations);
   return text;
 }
@@ -50,7 +52,7 @@ void append_detail(JsonText& json, const model::Region& region, const model::Det
   json.number("doors", static_cast<double>(counts.doors));
   json.number("passages", static_cast<double>(counts.passages));
   for (const auto& [name, kinds] :
-       {std::pair("elements", &counts.elements), {"installations", &counts.installations}}) {
+       {std::pair("elements", &counts.elements), {"roof_elements", &counts.roof_elements}, {"installations", &counts.installations}}) {
     json.key(name);
     json.open('{');
     for (const auto& [kind, count] : *kinds) json.number(kind, static_cast<double>(count));

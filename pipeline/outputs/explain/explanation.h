@@ -22,7 +22,7 @@
 //    "attributes":[{"name":"storeys","value":5,"unit":"","source":"neighbours","confidence":0.6,"why":…,
 //                   "lost":[{"value":"4","source":"preset","confidence":0.3,"why":…}]},…],
 //    "bodies":[{"id":"w1","lod":2,"asked_roof":"gabled","built_roof":"hipped","fallbacks":["ROOF_SHAPE_ADAPTED"],
-//               "detail":{"windows":24,"doors":1,"passages":1,"elements":{"casement":24,…},"installations":{"chimney":3,…}},
+//               "detail":{"windows":24,"doors":1,"passages":1,"elements":{"casement":24,…},"roof_elements":{"dormer":2,…},"installations":{"chimney":3,…}},
 //               …}],                  detail: of LoD3
 //    "notes":[{"code":"SPIKE_REMOVED","class":"notice","meaning":…,"detail":"1 points"}],
 //    "files":["tiles/15/1/2.glb",…]}

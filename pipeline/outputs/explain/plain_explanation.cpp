@@ -525,7 +525,7 @@ class PlainText {
       const Json& detail = body.at("detail");
       windows += detail.value("windows", 0.0);
       doors += detail.value("doors", 0.0);
-      for (const char* group : {"elements", "installations"})
+      for (const char* group : {"elements", "roof_elements", "installations"})
         if (detail.contains(group))
           for (const auto& [kind, count] : detail.at(group).items())
             if (!element_words(kind).one.empty()) things[kind] += count.get<double>();

@@ -157,6 +157,7 @@ ElementWords element_words(std::string_view kind) {
       {"chimney", {"chimney", "chimneys"}},
       {"roof_window", {"roof window", "roof windows"}},
       {"dormer", {"dormer", "dormers"}},
+      {"cross_gable", {"cross gable", "cross gables"}},
   };
   for (const auto& [name, words] : kWords)
     if (name == kind) return words;
