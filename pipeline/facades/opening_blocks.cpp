@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/vector.h"
@@ -109,11 +110,14 @@ void Obstacles::add_slope(const model::Solid& solid, std::uint32_t f) {
     slope.sx = -nx / nz;
     slope.sy = -ny / nz;
   }
-  for (const auto& loop : solid.loops_of(face))
-    for (const std::uint32_t i : solid.indices_of(loop)) {
+  for (std::size_t l = 0; l < face.loop_count; ++l) {
+    std::vector<Point3>* const hole = l > 0 ? &slope.holes.emplace_back() : nullptr;
+    for (const std::uint32_t i : solid.indices_of(solid.loops_of(face)[l])) {
       const Point3& p = solid.vertices[i];
       slope.slack = std::max(slope.slack, std::fabs(slope.z(p.xy()) - p.z));
+      if (hole) hole->push_back(p);
     }
+  }
   slopes_.push_back(std::move(slope));
 }
 
@@ -144,9 +148,50 @@ bool Obstacles::blocked(const Block& block, std::uint32_t own, std::uint32_t oth
       const Point2 a = slope.ring[i], b = slope.ring[(i + 1) % slope.ring.size()];
       if (!far_from(a, b) && block.meets_segment(a, b)) return true;
     }
-    if (geometry::contains(slope.ring, block.plan[0])) return true;
+    if (slope.holes.empty() || slope.steep) {
+      if (geometry::contains(slope.ring, block.plan[0])) return true;
+    } else if (slope.reaches(block)) {
+      return true;
+    }
   }
   return false;
+}
+
+bool Obstacles::Slope::reaches(const Block& block) const {
+  // Of the block that part counts through which the slope's plane goes: it is convex, and where no border crosses it, all of it is
+  // material or none.
+  for (const std::vector<Point3>& hole : holes)
+    for (std::size_t i = 0; i < hole.size(); ++i) {
+      const Point3 &a = hole[i], &b = hole[(i + 1) % hole.size()];
+      if (std::max(a.z, b.z) + slack >= block.low && std::min(a.z, b.z) - slack <= block.high &&
+          block.meets_segment(a.xy(), b.xy()))
+        return true;
+    }
+  const auto height = [&](Point2 p) { return z(p); };
+  const Point2 *low_corner = nullptr, *high_corner = nullptr;
+  std::optional<Point2> in;
+  for (const Point2& p : block.plan) {
+    const double h = height(p);
+    if (h < block.low)
+      low_corner = &p;
+    else if (h > block.high)
+      high_corner = &p;
+    else
+      in = p;
+  }
+  if (!in && low_corner && high_corner) {
+    const double a = height(*low_corner), b = height(*high_corner),
+                 share = ((block.low + block.high) / 2 - a) / (b - a);
+    in = Point2{low_corner->x + share * (high_corner->x - low_corner->x),
+                low_corner->y + share * (high_corner->y - low_corner->y)};
+  }
+  if (!in) in = block.plan[0];
+  if (!geometry::contains(ring, *in)) return false;
+  return std::none_of(holes.begin(), holes.end(), [&](const std::vector<Point3>& hole) {
+    std::vector<Point2> flat;
+    for (const Point3& p : hole) flat.push_back(p.xy());
+    return geometry::contains(flat, *in);
+  });
 }
 
 }  // namespace blockrand::facades

@@ -70,7 +70,7 @@ class GrowingCells {
 };
 
 /// The faces of a solid, each by something that is never smaller: upright ones by the rectangle around them, others by
-/// the points between two planes over their outline (holes are filled).
+/// the points between two planes over their outline. Holes of slopes, in which dormers stand, are open.
 class Obstacles {
  public:
   /// \param solid  must outlive this
@@ -83,12 +83,15 @@ class Obstacles {
   /// A face that is not upright.
   struct Slope {
     std::vector<model::Point2> ring;
+    std::vector<std::vector<model::Point3>> holes;
     Box2 box;
     double low = 0, high = 0;
     bool steep = false;  ///< no height can be told of its plane
     model::Point3 at;    ///< a point of its plane
     double sx = 0, sy = 0;
     double slack = 0;  ///< m of height that its corners lie off the plane at most
+    /// Whether the slope itself, not one of its holes, is where its plane goes through the block. For what meets no outer border.
+    bool reaches(const Block& block) const;
     double z(model::Point2 p) const { return at.z + (p.x - at.x) * sx + (p.y - at.y) * sy; }
   };
   struct Upright {
