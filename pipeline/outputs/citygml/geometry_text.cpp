@@ -196,8 +196,8 @@ void GeometryText::surfaces(const model::Solid& lod2, const model::Detail& detai
     if (written[f]) continue;
     const std::string_view name = kSurfaceNames[static_cast<std::size_t>(lod3.faces[f].kind)];
     open_surface(name, id, f);
+    text.wall(f);
     if (f < lod2.faces.size()) {
-      text.wall(f);
       single_surface("lod2MultiSurface", id, f, Mark::polygon);
       out_ += '\n';
     }
