@@ -114,7 +114,7 @@ class FacadeBuilder {
   /// Dormers and cross gables on the roof, windows in their fronts and in gables.
   /// \param walls  of the LoD2 solid; becomes those of the furnished one, which begin with them
   void furnish(const GrammarLibrary::Entry& grammar, const model::Building& building, BuildingPart& part,
-               const masses::BuiltMass& mass, std::vector<WallFrame>& walls, const std::vector<FacadeSegment>& segments,
+               masses::BuiltMass& mass, std::vector<WallFrame>& walls, const std::vector<FacadeSegment>& segments,
                double eaves, std::uint64_t seed, std::uint64_t row) {
     if (segments.empty()) return;
     WindowsBelow windows = windows_below();
@@ -128,6 +128,7 @@ class FacadeBuilder {
     std::vector<std::string> complaints;
     const RoofOrders orders = read_roof_orders(values.attributes, complaints);
     for (const std::string& complaint : complaints) tell(complaint);
+    mass.gable = orders.gable;
     const std::vector<model::RoofEdge> edges = edges_of_plan(building, part, mass.plan);
     std::vector<WindowAxes> axes = window_axes(walls, part);
     furnished_ = furnish_roof(building, part, mass, edges, axes, orders);

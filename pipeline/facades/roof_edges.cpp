@@ -12,11 +12,13 @@
 #include "pipeline/attributes/roof_edges.h"
 #include "pipeline/facades/bodies_on_roofs.h"
 #include "pipeline/facades/buildings_in_stretches.h"
+#include "pipeline/geometry/plan_shape.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/model/vector.h"
 #include "styles/roofs/caps.h"
 #include "styles/roofs/firewalls.h"
+#include "styles/roofs/gables.h"
 #include "styles/roofs/overhangs.h"
 #include "styles/roofs/parapets.h"
 #include "styles/roofs/roof_outline.h"
@@ -43,6 +45,8 @@ constexpr double kParapet = 0.40;
 constexpr double kLowerNeighbour = 2.0;
 /// m. An eaves' body at its highest comes down the wall so far (OverhangOptions::thickness, most_drop).
 constexpr double kEavesDepth = 0.25;
+/// m². What two gables have in common by rounding.
+constexpr double kLeastCommon = 1e-3;
 /// m between places at which the room before a wall is felt for, along it and away from it.
 constexpr double kFeelAlong = 0.5, kFeelOut = 0.05;
 
@@ -127,16 +131,21 @@ class RoofDresser {
     std::vector<std::vector<Point2>> out;
     for (const model::RoofInstallation& stack : body.lod3.roof_installations) {
       if (stack.kind != RoofElementKind::chimney) continue;
-      for (const model::Face& face : stack.solid.faces) {
-        if (face.kind != SurfaceKind::roof) continue;  // its top
-        std::vector<Point2> ring;
-        for (const std::uint32_t v : stack.solid.indices_of(stack.solid.loops_of(face)[0]))
-          ring.push_back(stack.solid.vertices[v].xy());
-        if (ring.size() >= 3) out.push_back(std::move(ring));
-        break;
-      }
+      if (std::vector<Point2> ring = top_of(stack); ring.size() >= 3) out.push_back(std::move(ring));
     }
     return out;
+  }
+
+  /// The plan of a chimney's top.
+  static std::vector<Point2> top_of(const model::RoofInstallation& stack) {
+    std::vector<Point2> ring;
+    for (const model::Face& face : stack.solid.faces) {
+      if (face.kind != SurfaceKind::roof) continue;
+      for (const std::uint32_t v : stack.solid.indices_of(stack.solid.loops_of(face)[0]))
+        ring.push_back(stack.solid.vertices[v].xy());
+      break;
+    }
+    return ring;
   }
 
   /// Whether a course of the facade ends the wall where eaves would begin.
@@ -224,6 +233,9 @@ class RoofDresser {
       if (built.refused > 0) left_out_[kind] += built.refused;
     };
 
+    std::vector<bool> has_gable(edges.size(), false);
+    if (standing.gable) put_gables(body, standing, kinds, has_gable, taken, bodies);
+
     if (old && !small) {
       std::vector<roofs::FirewallSide> sides(edges.size());
       bool any = false;
@@ -251,7 +263,7 @@ class RoofDresser {
       if (!is) level[s.edge] = false;
     }
     if (any_level && !small && has_parapet(building.attributes)) {
-      for (std::size_t i = 0; i < edges.size(); ++i) bare[i] = kinds[i] == model::RoofEdge::party_wall;
+      for (std::size_t i = 0; i < edges.size(); ++i) bare[i] = has_gable[i] || kinds[i] == model::RoofEdge::party_wall;
       roofs::ParapetOptions options;
       options.height = kParapet;
       take(roofs::parapets(plan, roof, kinds, bare, taken, options), RoofElementKind::parapet);
@@ -265,7 +277,7 @@ class RoofDresser {
     for (std::size_t i = 0; i < edges.size(); ++i) {
       double top = 1e300;
       for (const Point3& p : roof.wall_tops[i]) top = std::min(top, p.z);
-      rooms[i] = {kinds[i], level[i] || has_cornice(body, edges[i], top) ? 0 : free[i]};
+      rooms[i] = {kinds[i], level[i] || has_gable[i] || has_cornice(body, edges[i], top) ? 0 : free[i]};
     }
     roofs::BuiltOverhangs beyond = roofs::overhangs(plan, roof, rooms, over);
     take(std::move(beyond.elements), RoofElementKind::eaves);
@@ -289,6 +301,55 @@ class RoofDresser {
       }
       paint(made, looks);
       body.lod3.roof_installations.push_back(std::move(made));
+    }
+  }
+
+  static model::Polygon plan_of(const std::vector<Point2>& ring) {
+    model::Polygon out;
+    out.outer.points = ring;
+    return out;
+  }
+
+  /// Ornamental gables before all that looks on a street. Chimneys that stand where one comes give way.
+  void put_gables(BuildingPart& body, const masses::BuiltMass& standing, const std::vector<model::RoofEdge>& kinds,
+                  std::vector<bool>& has_gable, std::vector<std::vector<Point2>>& taken,
+                  std::vector<model::RoofInstallation>& bodies) {
+    std::vector<std::vector<Point2>> gables;
+    for (std::uint32_t i = 0; i < kinds.size(); ++i) {
+      if (kinds[i] != model::RoofEdge::street) continue;
+      if (!roofs::may_stand_before(standing.gable->form, body.built_roof)) continue;
+      roofs::BuiltGable made = roofs::ornamental_gable(standing.plan, standing.roof, i, *standing.gable);
+      if (!made.body) {
+        // Where nothing rises behind, no gable looks on the street.
+        if (made.refusal != roofs::GableRefusal::form) ++left_out_[RoofElementKind::gable];
+        continue;
+      }
+      // At a corner of two streets one gable has the corner.
+      const geometry::PlanShape here({plan_of(made.place)});
+      const auto common = [&](const std::vector<Point2>& other) {
+        return here.common_area(geometry::PlanShape({plan_of(other)})) > kLeastCommon;
+      };
+      if (std::ranges::any_of(gables, [&](const std::vector<Point2>& other) {
+            return common(other);
+          }))
+        continue;
+      gables.push_back(made.place);
+      has_gable[i] = true;
+      if (std::ranges::any_of(taken, common)) {
+        auto& standing_there = body.lod3.roof_installations;
+        const auto gone = std::remove_if(standing_there.begin(), standing_there.end(), [&](const auto& stack) {
+          if (stack.kind != RoofElementKind::chimney) return false;
+          std::vector<Point2> ring = top_of(stack);
+          return ring.size() >= 3 && common(ring);
+        });
+        if (gone != standing_there.end())
+          left_out_[RoofElementKind::chimney] += static_cast<int>(standing_there.end() - gone);
+        standing_there.erase(gone, standing_there.end());
+        taken = stacks_on(body);
+        taken.insert(taken.end(), gables.begin(), gables.end() - 1);
+      }
+      bodies.push_back(std::move(*made.body));
+      taken.push_back(std::move(made.place));
     }
   }
 

@@ -23,6 +23,8 @@ using OutlinesNear =
 ///   of the facade ends the wall.
 /// * Caps along ridges and hips of tiled and slated roofs.
 /// * Parapets around level roofs of houses of after 1919 and of all that are no houses of people.
+/// * Ornamental gables where rules for roofs order them (BuiltMass::gable), before all walls on streets behind which a roof rises, or,
+///   attics, does not. Chimneys, eaves, verges, parapets and caps give way to them.
 /// * Fire walls on old houses' party walls where the neighbour's eaves are two metres and more lower.
 ///
 /// Bodies of one part keep out of each other and of their part by construction; those of buildings in several parts are held against

@@ -3,9 +3,11 @@
 
 #include <compare>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "pipeline/model/polygon.h"
+#include "styles/roofs/gables.h"
 #include "styles/roofs/roof.h"
 
 namespace blockrand::masses {
@@ -16,6 +18,7 @@ struct BuiltMass {
   model::Polygon plan;  ///< may be simpler than BuildingPart::roof_plan; edges are numbered as those of `roof`
   double bottom = 0;    ///< m above the build's height reference: z of the underside
   roofs::Roof roof;
+  std::optional<roofs::GableOptions> gable;  ///< rules for roofs want it before what looks on a street; LoD3
 };
 
 /// Plan and roof as geometry::SolidBuilder makes faces of them: points rounded to the 1/1024 m grid, repetitions within
