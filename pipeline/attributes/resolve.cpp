@@ -43,6 +43,7 @@ const UseDefaults& with_style(const Building& building, const ResolveInputs& in,
   storage.storey_height = style.storey_height + style.attic_wall / style.storeys.typ;
   storage.plinth = style.plinth;
   if (style.roof_pitch) storage.roof_pitch = style.roof_pitch->typ;
+  storage.gable_to_street = style.gable_to_street;
   storage.wall_colours = style.wall_colours;
   storage.roof_colours = style.roof_colours;
   storage.wall_material = style.wall_material;

@@ -63,6 +63,7 @@ struct Resolver {
   double rise = 0;                   ///< m: highest ground under this body above the building's lowest
   std::optional<double> floor = {};  ///< m above the lowest ground: level of the building's ground floor, once known
   std::vector<TagConflict> against_terrain = {};  ///< what tags and terrain do not agree about
+  bool gable_to_street = false;                   ///< roof_orientation() chose it
   double usual_pitch_asked = 0;                   ///< degrees, of usual_height()
 
   template <class T>
@@ -133,6 +134,8 @@ struct Resolver {
   model::Sourced<model::RoofShape> roof_shape();
 
   model::Sourced<model::RoofOrientation> roof_orientation(model::RoofShape shape);
+  /// Which way the only street front looks, as wide as a gable house is; none elsewhere.
+  std::optional<model::Point2> narrow_front() const;
 
   model::Sourced<double> roof_height(model::RoofShape shape, model::RoofOrientation orientation, double storey_height);
 

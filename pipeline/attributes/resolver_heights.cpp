@@ -190,6 +190,7 @@ void Resolver::derived(Attributes& a) {
   }
   roofs::RoofRequest request = tagged_request(own, a.roof_shape.value, row());
   request.across = a.roof_orientation.value == RoofOrientation::across;
+  request.axis_is_mapped = request.axis_is_mapped || gable_to_street;
   if (const auto angle = useful_roof_angle(own, a.roof_shape.value)) {
     a.roof_pitch = make<double>(*angle, Source::tag, kTagConfidence, "tagged");
   } else {

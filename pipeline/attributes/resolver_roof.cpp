@@ -24,6 +24,10 @@ double tangent(double degrees) { return base::tan(degrees * base::kRadiansPerDeg
 
 /// Tangent of 30 degrees: a ridge that is seen runs along or across the plan when it is within that of it.
 constexpr double kOblique = 0.577;
+/// m of front of a gable house (docs/style_measures.md 6, `burgher_gable`: lots of 5.4 to 12 m); narrower ones are lean-tos in gaps.
+constexpr double kNarrowestGable = 3.5, kWidestGable = 12;
+/// Of the length of walls on streets that looks the same way: less is a house at a corner, whose roof turns.
+constexpr double kOneFront = 0.9;
 
 /// Full storeys under rafters: Berlin's building codes from 1887 allowed five and 22 m to the eaves, post-war ones call what has
 /// its highest floor above 22 m a tower. Of 37 houses with seven storeys and more that looked sloped 37 are tagged flat, of 29
@@ -117,12 +121,38 @@ std::optional<bool> Resolver::seen_across(RoofShape shape) const {
   return across > along;
 }
 
+std::optional<model::Point2> Resolver::narrow_front() const {
+  if (!part || !is_whole() || plan().outer.size() < 3 || !roofs::has_plain_extents(plan())) return std::nullopt;
+  const auto& ring = plan().outer.points;
+  if (part->roof_edges.size() < ring.size()) return std::nullopt;
+  model::Point2 sum{};  // outward normals by length
+  double length = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    if (part->roof_edges[i] != model::RoofEdge::street) continue;
+    const model::Point2 a = ring[i], b = ring[(i + 1) % ring.size()];
+    sum = {sum.x + (b.y - a.y), sum.y - (b.x - a.x)};
+    length += std::hypot(b.x - a.x, b.y - a.y);
+  }
+  const double front = std::hypot(sum.x, sum.y);
+  if (front < kNarrowestGable || front > kWidestGable || front < kOneFront * length) return std::nullopt;
+  return model::Point2{sum.x / front, sum.y / front};
+}
+
 Sourced<RoofOrientation> Resolver::roof_orientation(RoofShape shape) {
   std::vector<Choice<RoofOrientation>> choices;
   if (own.roof_orientation) choices.push_back({*own.roof_orientation, Source::tag, kTagConfidence, "tagged"});
   if (const auto across = seen_across(shape))
     choices.push_back({*across ? RoofOrientation::across : RoofOrientation::along, building.seen_roof.ridge.source,
                        static_cast<double>(building.seen_roof.ridge.confidence), building.seen_roof.ridge.why});
+  if (usual.gable_to_street && shape == RoofShape::gabled && choices.empty() && !own.roof_direction)
+    if (const auto front = narrow_front()) {
+      const model::Point2 longer = geometry::long_axis(plan().outer.points);
+      const bool along =
+          std::fabs(front->x * longer.x + front->y * longer.y) >= std::fabs(front->x * longer.y - front->y * longer.x);
+      choices.push_back({along ? RoofOrientation::along : RoofOrientation::across, usual_source(), usual_confidence(),
+                         "gable to the street: " + usual_name()});
+      gable_to_street = true;
+    }
   if (shape != RoofShape::flat && !own.roof_direction && part && plan().outer.size() >= 3) {
     if (const auto axis = roofs::row_axis(plan(), tagged_request(own, shape, part->roof_edges))) {
       const model::Point2 longer = geometry::long_axis(plan().outer.points);
@@ -154,6 +184,7 @@ Sourced<double> Resolver::roof_height(RoofShape shape, RoofOrientation orientati
 Choice<double> Resolver::usual_height(RoofShape shape, RoofOrientation orientation) {
   roofs::RoofRequest request = tagged_request(own, shape, row());
   request.across = orientation == RoofOrientation::across;
+  request.axis_is_mapped = request.axis_is_mapped || gable_to_street;
   const roofs::MainSlope slope =
       plan().outer.size() < 3 ? roofs::MainSlope{} : roofs::main_slope(plan(), request, true);
   const auto* edges = model::constructed_as<model::EdgeRoof>(shape);

@@ -15,9 +15,9 @@ namespace blockrand::facades {
 
 /// What fronts on the roof take over from the facades below.
 struct WindowsBelow {
-  std::string kind;                   ///< "double_casement"; empty: no windows
-  double width = 0;                   ///< m, of the topmost storey's
-  std::string frame_colour;           ///< #rrggbb
+  std::string kind;          ///< "double_casement"; empty: no windows
+  double width = 0;          ///< m, of the topmost storey's
+  std::string frame_colour;  ///< #rrggbb
 };
 
 struct FacadeContext {

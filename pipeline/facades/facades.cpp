@@ -15,11 +15,11 @@
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/random.h"
+#include "pipeline/facades/bodies_on_roofs.h"
 #include "pipeline/facades/element_library.h"
 #include "pipeline/facades/facade_context.h"
 #include "pipeline/facades/opening_proof.h"
 #include "pipeline/facades/openings.h"
-#include "pipeline/facades/bodies_on_roofs.h"
 #include "pipeline/facades/passages.h"
 #include "pipeline/facades/roof_elements.h"
 #include "pipeline/facades/wall_corners.h"
@@ -83,11 +83,12 @@ class FacadeBuilder {
       close_portals();
     }
     take_parameters(*grammar, building);
+    const bool inhabited = has_hearths(building.attributes, defaults_);
     memo_.values.clear();
     for (const FacadeSegment& segment : segments) {
       if (segment.kind == model::WallSegmentKind::party_wall || segment.kind == model::WallSegmentKind::unknown)
         continue;
-      derive_segment(*grammar, {building, part, walls[segment.wall], segment, eaves}, seed, row);
+      derive_segment(*grammar, {building, part, walls[segment.wall], segment, eaves, nullptr, inhabited}, seed, row);
     }
     furnished_.reset();
     if (mass && grammar->roof && main_body(building) == &part) {
@@ -121,7 +122,8 @@ class FacadeBuilder {
     // The values are those of the building: the segment that rules see is its main front, else its first wall.
     const FacadeSegment* front = &segments.front();
     for (const FacadeSegment& s : segments)
-      if (s.kind == model::WallSegmentKind::street && (front->kind != s.kind || s.length() > front->length())) front = &s;
+      if (s.kind == model::WallSegmentKind::street && (front->kind != s.kind || s.length() > front->length()))
+        front = &s;
     const bool inhabited = has_hearths(building.attributes, defaults_);
     FacadeContext context{building, part, walls[front->wall], *front, eaves, &windows, inhabited};
     const grammar::Derivation values = derive_roof(grammar, context, "Roof", {}, seed, row);
@@ -134,7 +136,8 @@ class FacadeBuilder {
     furnished_ = furnish_roof(building, part, mass, edges, axes, orders);
     if (furnished_ && furnished_->left_out > 0) {
       part.fallbacks.push_back(IssueCode::roof_element_left_out);
-      report_.add(part.osm, IssueCode::roof_element_left_out, fmt::format("dormers, cross gables: {}", furnished_->left_out));
+      report_.add(part.osm, IssueCode::roof_element_left_out,
+                  fmt::format("dormers, cross gables: {}", furnished_->left_out));
     }
     if (furnished_ && furnished_->fronts.empty()) furnished_.reset();
     if (furnished_) {
@@ -161,7 +164,8 @@ class FacadeBuilder {
       top = asked_[i].storey;
       out.kind = element.kind;
       out.width = width_of(element);
-      out.frame_colour = model::text(library_.materials(asked_[i].element)[static_cast<std::size_t>(model::ElementPart::frame)].colour);
+      out.frame_colour = model::text(
+          library_.materials(asked_[i].element)[static_cast<std::size_t>(model::ElementPart::frame)].colour);
     }
     return out;
   }
@@ -193,7 +197,8 @@ class FacadeBuilder {
                                   std::string_view place = {}) {
     grammar::DeriveOptions options;
     options.start_rule = rule;
-    options.seed = base::random_bits(seed, base::hash_text(fmt::format("{}/{}/{}", context.part.id, rule, place)), "roof");
+    options.seed =
+        base::random_bits(seed, base::hash_text(fmt::format("{}/{}/{}", context.part.id, rule, place)), "roof");
     options.building_seed = seed;
     options.row_seed = row;
     for (const auto& [name, value] : parameters_) options.attributes.emplace_back(name, value);
@@ -208,12 +213,14 @@ class FacadeBuilder {
   }
 
   /// Windows of a dormer or cross gable: rules see the front alone, from its lower border.
-  void derive_front(const GrammarLibrary::Entry& grammar, const FacadeContext& main, const std::vector<WallFrame>& walls,
-                    const std::vector<FacadeSegment>& segments, const RoofFront& front, std::uint64_t seed,
-                    std::uint64_t row) {
-    const auto wall = std::find_if(walls.begin(), walls.end(), [&](const WallFrame& w) { return w.face == front.face; });
+  void derive_front(const GrammarLibrary::Entry& grammar, const FacadeContext& main,
+                    const std::vector<WallFrame>& walls, const std::vector<FacadeSegment>& segments,
+                    const RoofFront& front, std::uint64_t seed, std::uint64_t row) {
+    const auto wall =
+        std::find_if(walls.begin(), walls.end(), [&](const WallFrame& w) { return w.face == front.face; });
     if (wall == walls.end()) return;
-    const double middle = (front.middle.x - wall->start.x) * wall->along.x + (front.middle.y - wall->start.y) * wall->along.y;
+    const double middle =
+        (front.middle.x - wall->start.x) * wall->along.x + (front.middle.y - wall->start.y) * wall->along.y;
     FacadeSegment piece;
     piece.wall = static_cast<std::uint32_t>(wall - walls.begin());
     piece.from = std::max(0.0, middle - front.width / 2);
@@ -229,8 +236,9 @@ class FacadeBuilder {
   }
 
   /// Windows in a wall above its eaves.
-  void derive_gable(const GrammarLibrary::Entry& grammar, const FacadeContext& main, const std::vector<WallFrame>& walls,
-                    const FacadeSegment& segment, std::uint64_t seed, std::uint64_t row) {
+  void derive_gable(const GrammarLibrary::Entry& grammar, const FacadeContext& main,
+                    const std::vector<WallFrame>& walls, const FacadeSegment& segment, std::uint64_t seed,
+                    std::uint64_t row) {
     const WallFrame& wall = walls[segment.wall];
     const double foot = std::clamp(main.eaves - wall.base, 0.0, wall.height);
     if (segment.kind == model::WallSegmentKind::party_wall || wall.height - foot < kLeastGable) return;
@@ -266,7 +274,8 @@ class FacadeBuilder {
       }
       return false;
     };
-    asked_.erase(std::remove_if(asked_.begin() + static_cast<std::ptrdiff_t>(first), asked_.end(), outside), asked_.end());
+    asked_.erase(std::remove_if(asked_.begin() + static_cast<std::ptrdiff_t>(first), asked_.end(), outside),
+                 asked_.end());
   }
 
   void derive_segment(const GrammarLibrary::Entry& grammar, const FacadeContext& context, std::uint64_t seed,
@@ -514,8 +523,7 @@ class FacadeBuilder {
       out.of_asked.push_back(i);
     }
     out.opened = cut_openings(*closed_.solid, walls, openings, rounding_);
-    auto triangles =
-        geometry::triangulate(out.opened.solid, *closed_.solid, *closed_.triangles, out.opened.triangles);
+    auto triangles = geometry::triangulate(out.opened.solid, *closed_.solid, *closed_.triangles, out.opened.triangles);
     const bool passages_checked = !checked_portals_.empty() && checked_portals_ == open_portals();
     if (!triangles || !(proved_valid(out.opened, *triangles, passages_checked) ||
                         geometry::check_solid(out.opened.solid, *triangles, geometry::kBuilt).valid()))
@@ -629,7 +637,7 @@ class FacadeBuilder {
   PartMaterials usual_materials_;  ///< of the part at work
   std::vector<std::string> complaints_;
   std::vector<std::pair<double, double>> pieces_;
-  Closed closed_;                          ///< of the part at work
+  Closed closed_;                           ///< of the part at work
   std::optional<FurnishedRoof> furnished_;  ///< the same, with dormers and cross gables; none: it has none
 };
 

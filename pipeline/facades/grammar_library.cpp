@@ -152,7 +152,8 @@ GrammarLibrary read_grammars(const std::string& configs, std::span<const distric
   std::vector<PresetGrammar> grammars;
   for (const districts::Preset& preset : presets) {
     if (preset.grammar.empty()) continue;
-    grammars.push_back({preset.name, preset.grammar, preset.attributes, preset.roof_grammar.value_or(usual ? kUsualRoofRules : "")});
+    grammars.push_back(
+        {preset.name, preset.grammar, preset.attributes, preset.roof_grammar.value_or(usual ? kUsualRoofRules : "")});
   }
   return {folder.string(), grammars};
 }

@@ -36,7 +36,7 @@ class GrammarLibrary {
     std::string preset;
     std::string file;  ///< below the folder of grammars
     const grammar::Deriver* deriver = nullptr;
-    const grammar::Deriver* roof = nullptr;  ///< of the rules for roofs; null: there are none
+    const grammar::Deriver* roof = nullptr;                          ///< of the rules for roofs; null: there are none
     std::vector<std::pair<std::string, grammar::Value>> attributes;  ///< of both
   };
 

@@ -329,10 +329,7 @@ class RoofDresser {
       const auto common = [&](const std::vector<Point2>& other) {
         return here.common_area(geometry::PlanShape({plan_of(other)})) > kLeastCommon;
       };
-      if (std::ranges::any_of(gables, [&](const std::vector<Point2>& other) {
-            return common(other);
-          }))
-        continue;
+      if (std::ranges::any_of(gables, [&](const std::vector<Point2>& other) { return common(other); })) continue;
       gables.push_back(made.place);
       has_gable[i] = true;
       if (std::ranges::any_of(taken, common)) {

@@ -44,14 +44,17 @@ class Values {
     const auto* number = value ? std::get_if<double>(value) : nullptr;
     if (!number) return usual;
     if (*number >= least && *number <= most) return *number;
-    complaints_.push_back(fmt::format("{} = {} is not within {} to {}; {} is taken", name, *number, least, most, usual));
+    complaints_.push_back(
+        fmt::format("{} = {} is not within {} to {}; {} is taken", name, *number, least, most, usual));
     return usual;
   }
   int count(std::string_view name, int least, int most, int usual) const {
     return static_cast<int>(std::lround(number(name, least, most, usual)));
   }
+  /// \param asked_by  the name by which people ask for it
   template <class Kind, std::size_t n>
-  std::optional<Kind> kind(std::string_view name, const std::pair<std::string_view, Kind> (&kinds)[n]) const {
+  std::optional<Kind> kind(std::string_view name, std::string_view asked_by,
+                           const std::pair<std::string_view, Kind> (&kinds)[n]) const {
     const std::string asked = text(name);
     if (asked.empty() || asked == "none") return std::nullopt;
     std::string known;
@@ -59,7 +62,7 @@ class Values {
       if (word == asked) return kind;
       known += fmt::format("{}, ", word);
     }
-    complaints_.push_back(fmt::format("{} = \"{}\" is none of {}none", name, asked, known));
+    complaints_.push_back(fmt::format("{} = \"{}\" is none of {}none", asked_by, asked, known));
     return std::nullopt;
   }
 
@@ -81,9 +84,8 @@ constexpr std::pair<std::string_view, DormerKind> kCrossGableNames[] = {{"gabled
                                                                         {"shed", DormerKind::shed},
                                                                         {"flat", DormerKind::flat},
                                                                         {"segmental", DormerKind::segmental}};
-constexpr std::pair<std::string_view, roofs::GableForm> kGableNames[] = {{"stepped", roofs::GableForm::stepped},
-                                                                         {"curved", roofs::GableForm::curved},
-                                                                         {"attic", roofs::GableForm::attic}};
+constexpr std::pair<std::string_view, roofs::GableForm> kGableNames[] = {
+    {"stepped", roofs::GableForm::stepped}, {"curved", roofs::GableForm::curved}, {"attic", roofs::GableForm::attic}};
 constexpr std::pair<std::string_view, RoofSide> kSideNames[] = {
     {"street", RoofSide::street}, {"rear", RoofSide::rear}, {"both", RoofSide::both}};
 
@@ -268,8 +270,8 @@ class Furnisher {
     for (std::size_t s = mass_.roof.surfaces.size(); s < out_.roof.surfaces.size(); ++s) {
       const roofs::Roof::Surface& surface = out_.roof.surfaces[s];
       model::Face& face = out_.solid.faces[first + s];
-      const bool is_front = std::any_of(out_.fronts.begin(), out_.fronts.end(),
-                                        [&](const RoofFront& f) { return f.face == first + s; });
+      const bool is_front =
+          std::any_of(out_.fronts.begin(), out_.fronts.end(), [&](const RoofFront& f) { return f.face == first + s; });
       if (surface.upright && !is_front) face.material = looks.roof.material, face.colour = looks.roof.colour;
     }
     if (!keep_vertices_of_lod2(looks)) return false;
@@ -288,8 +290,7 @@ class Furnisher {
     std::vector<Point3> vertices = body_.lod2.vertices;
     for (std::uint32_t& index : out_.solid.indices) {
       const Point3& p = out_.solid.vertices[index];
-      const auto [known, is_new] =
-          number.emplace(geometry::to_grid(p), static_cast<std::uint32_t>(vertices.size()));
+      const auto [known, is_new] = number.emplace(geometry::to_grid(p), static_cast<std::uint32_t>(vertices.size()));
       if (is_new) vertices.push_back(p);
       index = known->second;
     }
@@ -317,7 +318,7 @@ RoofOrders read_roof_orders(std::span<const std::pair<std::string, grammar::Valu
   const Values read(values, complaints);
   RoofOrders out;
   const double widest = roofs::kWidestElement;
-  if (const auto kind = read.kind("dormer_kind", kDormerNames)) {
+  if (const auto kind = read.kind("built_dormers", "dormer_kind", kDormerNames)) {
     roofs::DormerParameters p = roofs::usual_dormer(*kind);
     p.width = read.number("dormer_width", 0.6, widest, p.width);
     p.wall_height = read.number("dormer_height", 0.3, 3, p.wall_height);
@@ -325,10 +326,10 @@ RoofOrders read_roof_orders(std::span<const std::pair<std::string, grammar::Valu
     p.rise = p.width / 6;
     out.dormers = p;
   }
-  out.dormer_side = read.kind("dormer_side", kSideNames).value_or(RoofSide::both);
+  out.dormer_side = read.kind("dormer_side", "dormer_side", kSideNames).value_or(RoofSide::both);
   out.dormer_count = read.count("dormer_count", 0, 100, 0);
   out.dormer_every = read.count("dormer_every", 1, 20, 1);
-  if (const auto kind = read.kind("cross_gable_kind", kCrossGableNames)) {
+  if (const auto kind = read.kind("built_cross_gables", "cross_gable_kind", kCrossGableNames)) {
     roofs::CrossGableParameters p;
     p.kind = *kind;
     p.width = read.number("cross_gable_width", 1, widest, p.width);
@@ -337,9 +338,9 @@ RoofOrders read_roof_orders(std::span<const std::pair<std::string, grammar::Valu
     p.rise = p.width / 6;
     out.cross_gables = p;
   }
-  out.cross_gable_side = read.kind("cross_gable_side", kSideNames).value_or(RoofSide::street);
+  out.cross_gable_side = read.kind("cross_gable_side", "cross_gable_side", kSideNames).value_or(RoofSide::street);
   out.cross_gable_count = read.count("cross_gable_count", 0, 100, 1);
-  if (const auto form = read.kind("gable_form", kGableNames)) {
+  if (const auto form = read.kind("built_gable", "gable", kGableNames)) {
     roofs::GableOptions p;
     p.form = *form;
     p.steps = read.count("gable_steps", 3, 5, p.steps);

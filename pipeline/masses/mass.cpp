@@ -62,7 +62,9 @@ roofs::RoofRequest request_of(const model::Attributes& attributes, RoofShape sha
   if (attributes.roof_direction) request.down = roofs::compass_vector(attributes.roof_direction->value);
   request.across = attributes.roof_orientation.value == RoofOrientation::across;
   request.shape_is_mapped = attributes.roof_shape.source == model::Source::tag;
-  request.axis_is_mapped = attributes.roof_direction || attributes.roof_orientation.source == model::Source::tag;
+  // A style's gable to the street holds against the row as a tag does.
+  request.axis_is_mapped = attributes.roof_direction || attributes.roof_orientation.source == model::Source::tag ||
+                           attributes.roof_orientation.source == model::Source::preset;
   // An attic storey where nobody measured the roof.
   const bool usual = attributes.roof_height.source == model::Source::preset ||
                      attributes.roof_height.source == model::Source::default_;

@@ -250,6 +250,7 @@ RoofscapeCount count_roofscape(const model::Region& region) {
         ++s.party_eaves;
         const model::Attributes& a = part.attributes;
         s.party_eaves_mapped += a.roof_shape.source == model::Source::tag || a.roof_direction ||
+                                a.roof_orientation.source == model::Source::preset ||
                                 a.roof_orientation.source == model::Source::tag;
         s.party_eaves_length += party;
       }

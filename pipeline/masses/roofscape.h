@@ -23,11 +23,12 @@ struct Roofscape {
   /// Houses from whose eaves water runs into a neighbour's wall: eaves of more than 1 m, at most 1.5 m above the
   /// lowest, on a party wall longer than 2.5 m in a facade that is one (half of it, three quarters of a rear one).
   std::uint64_t party_eaves = 0;
-  std::uint64_t party_eaves_mapped = 0;  ///< of them: roof:shape, roof:direction or roof:orientation want it so
-  double party_eaves_length = 0;         ///< m
-  std::uint64_t meetings = 0;            ///< slopes of two neighbours that are one plane by eaves, pitch and direction
-  std::uint64_t apart = 0;               ///< of them: more than kApart between them somewhere
-  double widest = 0;                     ///< m, of those
+  std::uint64_t party_eaves_mapped =
+      0;  ///< of them: roof:shape, roof:direction, roof:orientation or the gables of a style want it so
+  double party_eaves_length = 0;  ///< m
+  std::uint64_t meetings = 0;     ///< slopes of two neighbours that are one plane by eaves, pitch and direction
+  std::uint64_t apart = 0;        ///< of them: more than kApart between them somewhere
+  double widest = 0;              ///< m, of those
 };
 
 /// m. Slopes that should meet may be this far apart above their common wall.

@@ -111,6 +111,7 @@ void read_roof(TomlTable& table, Style& style) {
     if (style.double_saltbox > style.roof[static_cast<std::size_t>(RoofFamily::other)] + kShareSlack)
       table.fail("roof_detail", "double_saltbox is more than `other`", "It is a part of roof.other");
   }
+  style.gable_to_street = table.boolean("gable_to_street").value_or(false);
   if (const auto v = table.numbers("roof_pitch")) style.roof_pitch = spread_of(table, "roof_pitch", *v, 0, 85);
   if (!style.roof_pitch && style.roof[static_cast<std::size_t>(RoofFamily::flat)] < 1 - kShareSlack)
     table.fail("roof", "no `roof_pitch` for a style with roofs that are not flat",

@@ -51,8 +51,9 @@ void append_detail(JsonText& json, const model::Region& region, const model::Det
   json.number("windows", static_cast<double>(counts.windows));
   json.number("doors", static_cast<double>(counts.doors));
   json.number("passages", static_cast<double>(counts.passages));
-  for (const auto& [name, kinds] :
-       {std::pair("elements", &counts.elements), {"roof_elements", &counts.roof_elements}, {"installations", &counts.installations}}) {
+  for (const auto& [name, kinds] : {std::pair("elements", &counts.elements),
+                                    {"roof_elements", &counts.roof_elements},
+                                    {"installations", &counts.installations}}) {
     json.key(name);
     json.open('{');
     for (const auto& [kind, count] : *kinds) json.number(kind, static_cast<double>(count));
