@@ -224,7 +224,7 @@ TEST(RoofRules, EveryDormerHasItsWindowAlsoOnMansards) {
     EXPECT_TRUE(geometry::check_solid(part.lod3.solid, part.lod3.triangles).valid());
     EXPECT_EQ(built.find({0, 0})->roof.elements.size(), static_cast<std::size_t>(dormers))
         << "what stands on the roof later knows of them";
-    EXPECT_TRUE(tile.region.report.rows().empty()) << tile.region.report.rows().front().detail;
+    EXPECT_TRUE(tile.region.report.rows.empty()) << tile.region.report.rows.front().detail;
   }
 }
 
