@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/facades/bodies_on_roofs.h"
+
 namespace blockrand::facades {
 namespace {
 
@@ -181,7 +183,7 @@ const std::vector<ContextAttribute> kAttributes = {
     {"building.height", "m", "ground to the top of the roof, of this part",
      [](const C& c) -> Value { return c.part.attributes.height.value; }},
     {"building.inhabited", "", "a house of people, or an old one of shops and offices: it has hearths and an attic",
-     [](const C& c) -> Value { return c.inhabited; }},
+     [](const C& c) -> Value { return c.defaults && has_hearths(c.building.attributes, *c.defaults); }},
     {"building.min_height", "m", "ground to the underside of this part",
      [](const C& c) -> Value { return c.part.attributes.min_height.value; }},
     {"building.plinth", "m", "ground to the level of the ground floor",

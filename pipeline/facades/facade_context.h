@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/attributes/defaults.h"
 #include "pipeline/facades/facade_segments.h"
 #include "pipeline/facades/wall_frame.h"
 #include "pipeline/model/building.h"
@@ -28,7 +29,7 @@ struct FacadeContext {
   double eaves = 0;  ///< m above the height reference, of the part: eaves_level()
   /// Of the windows that the facades of the part have; null before they are laid out.
   const WindowsBelow* windows = nullptr;
-  bool inhabited = false;  ///< has_hearths()
+  const attributes::Defaults* defaults = nullptr;  ///< what uses are; null: nobody lives there
 };
 
 /// One value that rules may read: "building.storeys". docs/grammar_attributes.md is printed from the list.

@@ -83,12 +83,11 @@ class FacadeBuilder {
       close_portals();
     }
     take_parameters(*grammar, building);
-    const bool inhabited = has_hearths(building.attributes, defaults_);
     memo_.values.clear();
     for (const FacadeSegment& segment : segments) {
       if (segment.kind == model::WallSegmentKind::party_wall || segment.kind == model::WallSegmentKind::unknown)
         continue;
-      derive_segment(*grammar, {building, part, walls[segment.wall], segment, eaves, nullptr, inhabited}, seed, row);
+      derive_segment(*grammar, {building, part, walls[segment.wall], segment, eaves, nullptr, &defaults_}, seed, row);
     }
     furnished_.reset();
     if (mass && grammar->roof && main_body(building) == &part) {
@@ -118,15 +117,15 @@ class FacadeBuilder {
                masses::BuiltMass& mass, std::vector<WallFrame>& walls, const std::vector<FacadeSegment>& segments,
                double eaves, std::uint64_t seed, std::uint64_t row) {
     if (segments.empty()) return;
+    take_roof_parameters(grammar, seed, row);
     WindowsBelow windows = windows_below();
     // The values are those of the building: the segment that rules see is its main front, else its first wall.
     const FacadeSegment* front = &segments.front();
     for (const FacadeSegment& s : segments)
       if (s.kind == model::WallSegmentKind::street && (front->kind != s.kind || s.length() > front->length()))
         front = &s;
-    const bool inhabited = has_hearths(building.attributes, defaults_);
-    FacadeContext context{building, part, walls[front->wall], *front, eaves, &windows, inhabited};
-    const grammar::Derivation values = derive_roof(grammar, context, "Roof", {}, seed, row);
+    FacadeContext context{building, part, walls[front->wall], *front, eaves, &windows, &defaults_};
+    const grammar::Derivation values = derive_roof(context, "Roof", {});
     std::vector<std::string> complaints;
     const RoofOrders orders = read_roof_orders(values.attributes, complaints);
     for (const std::string& complaint : complaints) tell(complaint);
@@ -147,8 +146,8 @@ class FacadeBuilder {
     }
     const std::size_t below = asked_.size();
     if (furnished_)
-      for (const RoofFront& f : furnished_->fronts) derive_front(grammar, context, walls, segments, f, seed, row);
-    for (const FacadeSegment& s : segments) derive_gable(grammar, context, walls, s, seed, row);
+      for (const RoofFront& f : furnished_->fronts) derive_front(context, walls, segments, f);
+    for (const FacadeSegment& s : segments) derive_gable(context, walls, s);
     keep_within(walls, below);
   }
 
@@ -192,30 +191,39 @@ class FacadeBuilder {
   }
 
   /// Runs a rule of the rules for roofs.
-  grammar::Derivation derive_roof(const GrammarLibrary::Entry& grammar, const FacadeContext& context, const char* rule,
-                                  const grammar::Shape& shape, std::uint64_t seed, std::uint64_t row,
+  grammar::Derivation derive_roof(const FacadeContext& context, const char* rule, const grammar::Shape& shape,
                                   std::string_view place = {}) {
-    grammar::DeriveOptions options;
+    grammar::DeriveOptions& options = roof_options_;
     options.start_rule = rule;
-    options.seed =
-        base::random_bits(seed, base::hash_text(fmt::format("{}/{}/{}", context.part.id, rule, place)), "roof");
-    options.building_seed = seed;
-    options.row_seed = row;
-    for (const auto& [name, value] : parameters_) options.attributes.emplace_back(name, value);
-    options.attributes.insert(options.attributes.end(), grammar.attributes.begin(), grammar.attributes.end());
+    options.seed = base::random_bits(options.building_seed,
+                                     base::hash_text(fmt::format("{}/{}/{}", context.part.id, rule, place)), "roof");
     options.source = [&](std::string_view name) { return context_value(context, name); };
-    options.limits.shapes = options_.most_shapes;
     options.orders_only = shape.mesh != nullptr;
-    grammar::Derivation out = grammar.roof->run(shape, options);
+    grammar::Derivation out = roof_rules_->run(shape, options);
     for (const grammar::Diagnostic& d : out.diagnostics)
       if (d.severity == grammar::Severity::error) tell(d.message);
     return out;
   }
 
+  /// What rules for roofs get from outside, the same for all derivations of a part.
+  void take_roof_parameters(const GrammarLibrary::Entry& grammar, std::uint64_t seed, std::uint64_t row) {
+    if (roof_rules_ != grammar.roof || roof_options_.attributes != derive_options_.attributes) {
+      roof_rules_ = grammar.roof;
+      roof_options_.attributes = derive_options_.attributes;
+      roof_outside_ = grammar.roof->outside_values(roof_options_.attributes);
+      roof_options_.outside = &roof_outside_;
+      roof_options_.memo = &roof_memo_;
+      roof_options_.is_shared = &is_of_part;
+      roof_options_.limits.shapes = options_.most_shapes;
+    }
+    roof_options_.building_seed = seed;
+    roof_options_.row_seed = row;
+    roof_memo_.values.clear();
+  }
+
   /// Windows of a dormer or cross gable: rules see the front alone, from its lower border.
-  void derive_front(const GrammarLibrary::Entry& grammar, const FacadeContext& main,
-                    const std::vector<WallFrame>& walls, const std::vector<FacadeSegment>& segments,
-                    const RoofFront& front, std::uint64_t seed, std::uint64_t row) {
+  void derive_front(const FacadeContext& main, const std::vector<WallFrame>& walls,
+                    const std::vector<FacadeSegment>& segments, const RoofFront& front) {
     const auto wall =
         std::find_if(walls.begin(), walls.end(), [&](const WallFrame& w) { return w.face == front.face; });
     if (wall == walls.end()) return;
@@ -232,13 +240,11 @@ class FacadeBuilder {
           (piece.kind == model::WallSegmentKind::unknown || s.kind == model::WallSegmentKind::street))
         piece.kind = s.kind, piece.edges = s.edges;
     const char* rule = front.kind == model::RoofElementKind::dormer ? "DormerFront" : "CrossGableFront";
-    derive_piece(grammar, main, *wall, piece, std::max(0.0, front.foot - wall->base), rule, seed, row);
+    derive_piece(main, *wall, piece, std::max(0.0, front.foot - wall->base), rule);
   }
 
   /// Windows in a wall above its eaves.
-  void derive_gable(const GrammarLibrary::Entry& grammar, const FacadeContext& main,
-                    const std::vector<WallFrame>& walls, const FacadeSegment& segment, std::uint64_t seed,
-                    std::uint64_t row) {
+  void derive_gable(const FacadeContext& main, const std::vector<WallFrame>& walls, const FacadeSegment& segment) {
     const WallFrame& wall = walls[segment.wall];
     const double foot = std::clamp(main.eaves - wall.base, 0.0, wall.height);
     if (segment.kind == model::WallSegmentKind::party_wall || wall.height - foot < kLeastGable) return;
@@ -246,18 +252,18 @@ class FacadeBuilder {
     if (furnished_)
       for (const RoofFront& f : furnished_->fronts)
         if (f.kind == model::RoofElementKind::cross_gable && f.face == wall.face) return;
-    derive_piece(grammar, main, wall, segment, foot, "Gable", seed, row);
+    derive_piece(main, wall, segment, foot, "Gable");
   }
 
-  void derive_piece(const GrammarLibrary::Entry& grammar, const FacadeContext& main, const WallFrame& wall,
-                    const FacadeSegment& piece, double foot, const char* rule, std::uint64_t seed, std::uint64_t row) {
+  void derive_piece(const FacadeContext& main, const WallFrame& wall, const FacadeSegment& piece, double foot,
+                    const char* rule) {
     grammar::Shape shape = wall_shape(wall);
     if (piece.from > 0 || piece.to < wall.length) shape = grammar::cut_piece(shape, 0, piece.from, piece.to, false);
     if (foot > 0) shape = grammar::cut_piece(shape, 1, foot, wall.height, false);
     if (!shape.mesh || shape.mesh->faces.empty()) return;
-    FacadeContext context{main.building, main.part, wall, piece, main.eaves, main.windows, main.inhabited};
+    FacadeContext context{main.building, main.part, wall, piece, main.eaves, main.windows, &defaults_};
     const std::string place = fmt::format("{}/{}", wall.face, static_cast<int>(std::floor(piece.from * 16)));
-    for (const grammar::Leaf& leaf : derive_roof(grammar, context, rule, shape, seed, row, place).leaves)
+    for (const grammar::Leaf& leaf : derive_roof(context, rule, shape, place).leaves)
       if (leaf.order) take(context, leaf);
   }
 
@@ -637,6 +643,10 @@ class FacadeBuilder {
   PartMaterials usual_materials_;  ///< of the part at work
   std::vector<std::string> complaints_;
   std::vector<std::pair<double, double>> pieces_;
+  const grammar::Deriver* roof_rules_ = nullptr;
+  grammar::DeriveOptions roof_options_;
+  grammar::AttributeMemo roof_memo_;  ///< of the part at work
+  std::vector<std::uint32_t> roof_outside_;
   Closed closed_;                           ///< of the part at work
   std::optional<FurnishedRoof> furnished_;  ///< the same, with dormers and cross gables; none: it has none
 };

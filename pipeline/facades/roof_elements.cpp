@@ -172,11 +172,12 @@ class Furnisher {
     return true;
   }
 
-  std::optional<roofs::RoofSlope> slope_at(std::size_t surface, RoofSide side) const {
+  std::optional<roofs::RoofSlope> slope_at(const roofs::RoofBorders& borders, std::size_t surface,
+                                           RoofSide side) const {
     if (out_.roof.surfaces[surface].element >= 0 || out_.roof.surfaces[surface].upright) return std::nullopt;
     const std::int32_t edge = edge_of(surface);
     if (edge < 0 || !on_side(edge, side)) return std::nullopt;
-    auto slope = roofs::roof_slope(out_.roof, surface, edges_);
+    auto slope = borders.slope(surface);
     if (!slope || !roofs::takes_elements(*slope)) return std::nullopt;
     return slope;
   }
@@ -184,7 +185,9 @@ class Furnisher {
   void add_cross_gables(const roofs::CrossGableParameters& each) {
     const std::size_t surfaces = out_.roof.surfaces.size();
     for (std::size_t s = 0; s < surfaces; ++s) {
-      const auto slope = slope_at(s, orders_.cross_gable_side);
+      // One before may have changed what this slope borders on.
+      if (out_.roof.surfaces[s].edge < 0 || !on_side(out_.roof.surfaces[s].edge, orders_.cross_gable_side)) continue;
+      const auto slope = slope_at(roofs::RoofBorders(out_.roof, edges_), s, orders_.cross_gable_side);
       if (!slope) continue;
       roofs::CrossGableParameters fitted = each;
       roofs::LayoutRequest wanted;
@@ -221,15 +224,25 @@ class Furnisher {
     return out;
   }
 
+  /// Whether a slope is as long and as high as an element with its distances, where it is largest.
+  bool has_room(const roofs::RoofSlope& slope, std::span<const Point2> outline) const {
+    const auto along = geometry::extent_along(outline, {1, 0}), up = geometry::extent_along(outline, {0, 1});
+    const auto all_along = slope.along_extent(), all_up = slope.up_extent();
+    return all_along.maximum - all_along.minimum >= along.maximum - along.minimum &&
+           all_up.maximum >= up.maximum - up.minimum + orders_.distances.eaves;
+  }
+
   void add_dormers(const roofs::DormerParameters& each) {
     const std::size_t surfaces = out_.roof.surfaces.size();
+    const roofs::Roof before = out_.roof;
+    const roofs::RoofBorders borders(before, edges_);
     for (std::size_t s = 0; s < surfaces; ++s) {
-      const auto slope = slope_at(s, orders_.dormer_side);
+      const auto slope = slope_at(borders, s, orders_.dormer_side);
       if (!slope) continue;
       const roofs::DormerParameters fitted = each;
       roofs::LayoutRequest wanted;
       wanted.outline = roofs::dormer_outline(*slope, fitted);
-      if (wanted.outline.empty()) continue;
+      if (wanted.outline.empty() || !has_room(*slope, wanted.outline)) continue;
       wanted.up = orders_.distances.eaves;
       if (orders_.dormer_count > 0) wanted.count = orders_.dormer_count;
       wanted.axes = every(axes_on(*slope, edge_of(s)), orders_.dormer_every);
@@ -241,7 +254,7 @@ class Furnisher {
           continue;
         }
         const auto front = static_cast<std::uint32_t>(out_.roof.surfaces.size());
-        if (!roofs::add_dormer(out_.roof, s, fitted, place, edges_, orders_.distances)) continue;
+        if (!roofs::add_laid_out_dormer(out_.roof, *slope, fitted, place)) continue;
         ++out_.dormers;
         const Point3 foot = slope->in_space(place);
         out_.fronts.push_back({RoofElementKind::dormer, front, edge_of(s), foot.xy(), fitted.width, foot.z});
@@ -315,44 +328,44 @@ class Furnisher {
 
 RoofOrders read_roof_orders(std::span<const std::pair<std::string, grammar::Value>> values,
                             std::vector<std::string>& complaints) {
-  const Values read(values, complaints);
+  const Values said(values, complaints);
   RoofOrders out;
   const double widest = roofs::kWidestElement;
-  if (const auto kind = read.kind("built_dormers", "dormer_kind", kDormerNames)) {
+  if (const auto kind = said.kind("built_dormers", "dormer_kind", kDormerNames)) {
     roofs::DormerParameters p = roofs::usual_dormer(*kind);
-    p.width = read.number("dormer_width", 0.6, widest, p.width);
-    p.wall_height = read.number("dormer_height", 0.3, 3, p.wall_height);
-    p.roof_pitch = read.number("dormer_pitch", 1, roofs::kSteepestDormerRoof, p.roof_pitch);
+    p.width = said.number("dormer_width", 0.6, widest, p.width);
+    p.wall_height = said.number("dormer_height", 0.3, 3, p.wall_height);
+    p.roof_pitch = said.number("dormer_pitch", 1, roofs::kSteepestDormerRoof, p.roof_pitch);
     p.rise = p.width / 6;
     out.dormers = p;
   }
-  out.dormer_side = read.kind("dormer_side", "dormer_side", kSideNames).value_or(RoofSide::both);
-  out.dormer_count = read.count("dormer_count", 0, 100, 0);
-  out.dormer_every = read.count("dormer_every", 1, 20, 1);
-  if (const auto kind = read.kind("built_cross_gables", "cross_gable_kind", kCrossGableNames)) {
+  out.dormer_side = said.kind("dormer_side", "dormer_side", kSideNames).value_or(RoofSide::both);
+  out.dormer_count = said.count("dormer_count", 0, 100, 0);
+  out.dormer_every = said.count("dormer_every", 1, 20, 1);
+  if (const auto kind = said.kind("built_cross_gables", "cross_gable_kind", kCrossGableNames)) {
     roofs::CrossGableParameters p;
     p.kind = *kind;
-    p.width = read.number("cross_gable_width", 1, widest, p.width);
-    p.wall_height = read.number("cross_gable_height", 0, 4, p.wall_height);
-    p.roof_pitch = read.number("cross_gable_pitch", 1, roofs::kSteepestDormerRoof, *kind == DormerKind::shed ? 10 : 45);
+    p.width = said.number("cross_gable_width", 1, widest, p.width);
+    p.wall_height = said.number("cross_gable_height", 0, 4, p.wall_height);
+    p.roof_pitch = said.number("cross_gable_pitch", 1, roofs::kSteepestDormerRoof, *kind == DormerKind::shed ? 10 : 45);
     p.rise = p.width / 6;
     out.cross_gables = p;
   }
-  out.cross_gable_side = read.kind("cross_gable_side", "cross_gable_side", kSideNames).value_or(RoofSide::street);
-  out.cross_gable_count = read.count("cross_gable_count", 0, 100, 1);
-  if (const auto form = read.kind("built_gable", "gable", kGableNames)) {
+  out.cross_gable_side = said.kind("cross_gable_side", "cross_gable_side", kSideNames).value_or(RoofSide::street);
+  out.cross_gable_count = said.count("cross_gable_count", 0, 100, 1);
+  if (const auto form = said.kind("built_gable", "gable", kGableNames)) {
     roofs::GableOptions p;
     p.form = *form;
-    p.steps = read.count("gable_steps", 3, 5, p.steps);
-    p.curves = read.count("gable_curves", 1, 2, p.curves);
-    p.overtop = read.number("gable_overtop", 0.1, 2, p.overtop);
-    p.attic_height = read.number("gable_attic_height", 0.3, 3, p.attic_height);
-    p.pediment = read.number("gable_pediment", 0, 1, p.pediment);
+    p.steps = said.count("gable_steps", 3, 5, p.steps);
+    p.curves = said.count("gable_curves", 1, 2, p.curves);
+    p.overtop = said.number("gable_overtop", 0.1, 2, p.overtop);
+    p.attic_height = said.number("gable_attic_height", 0.3, 3, p.attic_height);
+    p.pediment = said.number("gable_pediment", 0, 1, p.pediment);
     out.gable = p;
   }
-  out.distances.eaves = read.number("roof_eaves_distance", 0.1, 10, out.distances.eaves);
-  out.distances.between = read.number("roof_element_distance", 0.1, 10, out.distances.between);
-  out.distances.side = read.number("roof_side_distance", 0.1, 10, out.distances.side);
+  out.distances.eaves = said.number("roof_eaves_distance", 0.1, 10, out.distances.eaves);
+  out.distances.between = said.number("roof_element_distance", 0.1, 10, out.distances.between);
+  out.distances.side = said.number("roof_side_distance", 0.1, 10, out.distances.side);
   return out;
 }
 

@@ -14,6 +14,29 @@ std::optional<DormerBody> shape_on(const RoofSlope& plane, const DormerParameter
   return dormer_body({p.kind, p.width, p.wall_height, p.rise, p.roof_pitch, p.chords}, plane.rise);
 }
 
+void build(Roof& roof, const RoofSlope& plane, const DormerBody& shape, Point2 place) {
+  // Each point is rounded by itself, from the same numbers wherever it occurs.
+  const Point3 foot = plane.in_space(place);
+  const auto built = [&](const Point3& p) {
+    return model::snap(Point3{foot.x + p.x * plane.along_axis.x + p.y * plane.up_axis.x,
+                              foot.y + p.x * plane.along_axis.y + p.y * plane.up_axis.y, foot.z + p.z});
+  };
+  const auto built_loop = [&](const std::vector<Point3>& loop) {
+    std::vector<Point3> out;
+    for (const Point3& p : loop) out.push_back(built(p));
+    return out;
+  };
+  const auto element = static_cast<std::int32_t>(roof.elements.size());
+  roof.elements.push_back(model::RoofElementKind::dormer);
+  roof.surfaces[plane.surface].loops.push_back(built_loop(shape.outline));
+  std::vector<Point3> front{shape.outline.front(), shape.outline.back()};
+  for (const Point3& p : shape.head)
+    if (p != front.back() && p != front.front()) front.push_back(p);
+  roof.surfaces.push_back({-1, {built_loop(front)}, true, element});
+  for (const DormerBody::Face& face : shape.faces)
+    roof.surfaces.push_back({-1, {built_loop(face.loop)}, face.upright, element});
+}
+
 }  // namespace
 
 DormerParameters usual_dormer(DormerKind kind) {
@@ -43,27 +66,14 @@ bool add_dormer(Roof& roof, std::size_t surface, const DormerParameters& paramet
   auto outline = hull(outline_in_plane(*shape, *plane));
   for (Point2& p : outline) p = {p.x + place.x, p.y + place.y};
   if (!fits(*plane, outline, distances)) return false;
+  build(roof, *plane, *shape, place);
+  return true;
+}
 
-  // Each point is rounded by itself, from the same numbers wherever it occurs.
-  const Point3 foot = plane->in_space(place);
-  const auto built = [&](const Point3& p) {
-    return model::snap(Point3{foot.x + p.x * plane->along_axis.x + p.y * plane->up_axis.x,
-                              foot.y + p.x * plane->along_axis.y + p.y * plane->up_axis.y, foot.z + p.z});
-  };
-  const auto built_loop = [&](const std::vector<Point3>& loop) {
-    std::vector<Point3> out;
-    for (const Point3& p : loop) out.push_back(built(p));
-    return out;
-  };
-  const auto element = static_cast<std::int32_t>(roof.elements.size());
-  roof.elements.push_back(model::RoofElementKind::dormer);
-  roof.surfaces[surface].loops.push_back(built_loop(shape->outline));
-  std::vector<Point3> front{shape->outline.front(), shape->outline.back()};
-  for (const Point3& p : shape->head)
-    if (p != front.back() && p != front.front()) front.push_back(p);
-  roof.surfaces.push_back({-1, {built_loop(front)}, true, element});
-  for (const DormerBody::Face& face : shape->faces)
-    roof.surfaces.push_back({-1, {built_loop(face.loop)}, face.upright, element});
+bool add_laid_out_dormer(Roof& roof, const RoofSlope& plane, const DormerParameters& parameters, Point2 place) {
+  const auto shape = shape_on(plane, parameters);
+  if (!shape) return false;
+  build(roof, plane, *shape, place);
   return true;
 }
 

@@ -46,4 +46,8 @@ std::vector<model::Point2> dormer_outline(const RoofSlope& plane, const DormerPa
 bool add_dormer(Roof& roof, std::size_t surface, const DormerParameters& parameters, model::Point2 place,
                 std::span<const model::RoofEdge> edges = {}, const ElementDistances& distances = {});
 
+/// The same at a place that lay_out() found: nothing is asked again. \param plane  as the surface was then; dormers that were laid out
+/// with this one may stand there meanwhile
+bool add_laid_out_dormer(Roof& roof, const RoofSlope& plane, const DormerParameters& parameters, model::Point2 place);
+
 }  // namespace blockrand::roofs
