@@ -27,7 +27,7 @@ struct UseDefaults {
   model::RoofShape roof_shape = model::RoofShape::flat;
   double roof_pitch = 38;
   bool gable_to_street = false;  ///< of the style: narrow houses have their ridge square to the street
-  double pitched_width = 17;  ///< wider plans get a flat roof
+  double pitched_width = 17;     ///< wider plans get a flat roof
   std::string wall_material, roof_material, flat_roof_material;
   std::vector<model::Colour> wall_colours, roof_colours;
 };

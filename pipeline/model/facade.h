@@ -64,7 +64,8 @@ struct Detail {
   std::vector<Opening> openings;
   std::vector<Placement> placements;
   std::vector<WallInstallation> installations;
-  std::vector<RoofElementKind> roof_elements;  ///< dormers and cross gables that the solid has, in the order they were built
+  std::vector<RoofElementKind>
+      roof_elements;  ///< dormers and cross gables that the solid has, in the order they were built
   std::vector<RoofInstallation> roof_installations;  ///< chimneys, roof windows, with their triangles
 };
 

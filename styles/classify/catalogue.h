@@ -52,7 +52,7 @@ struct Style {
   std::array<double, kRoofFamilyCount> roof{};  ///< shares by RoofFamily, sum 1
   double double_saltbox = 0;                    ///< that part of roof[other] which is a Berliner Dach
   std::optional<Spread> roof_pitch;             ///< main slope of the roofs that are not flat; empty where all are
-  bool gable_to_street = false;                 ///< on a lot as narrow as its house: the ridge runs square to the street
+  bool gable_to_street = false;  ///< on a lot as narrow as its house: the ridge runs square to the street
   std::vector<model::Colour> wall_colours, roof_colours;  ///< at least one each
   std::string wall_material, roof_material;               ///< classes of configs/materials/materials.toml
   std::string note;

@@ -13,7 +13,7 @@ namespace blockrand::outputs {
 
 struct DetailCounts {
   std::uint64_t windows = 0, doors = 0;
-  std::uint64_t passages = 0;                                         ///< each once, though it has two portals
+  std::uint64_t passages = 0;  ///< each once, though it has two portals
   std::map<std::string_view, std::uint64_t> elements, roof_elements, installations;  ///< by kind
 };
 
