@@ -14,7 +14,7 @@ std::optional<DormerBody> shape_on(const RoofSlope& plane, const DormerParameter
   return dormer_body({p.kind, p.width, p.wall_height, p.rise, p.roof_pitch, p.chords}, plane.rise);
 }
 
-void build(Roof& roof, const RoofSlope& plane, const DormerBody& shape, Point2 place) {
+void build_dormer(Roof& roof, const RoofSlope& plane, const DormerBody& shape, Point2 place) {
   // Each point is rounded by itself, from the same numbers wherever it occurs.
   const Point3 foot = plane.in_space(place);
   const auto built = [&](const Point3& p) {
@@ -66,14 +66,14 @@ bool add_dormer(Roof& roof, std::size_t surface, const DormerParameters& paramet
   auto outline = hull(outline_in_plane(*shape, *plane));
   for (Point2& p : outline) p = {p.x + place.x, p.y + place.y};
   if (!fits(*plane, outline, distances)) return false;
-  build(roof, *plane, *shape, place);
+  build_dormer(roof, *plane, *shape, place);
   return true;
 }
 
 bool add_laid_out_dormer(Roof& roof, const RoofSlope& plane, const DormerParameters& parameters, Point2 place) {
   const auto shape = shape_on(plane, parameters);
   if (!shape) return false;
-  build(roof, plane, *shape, place);
+  build_dormer(roof, plane, *shape, place);
   return true;
 }
 
