@@ -13,6 +13,7 @@
 #include "importers/reference/height_words.h"
 #include "importers/reference/reference_crs.h"
 #include "pipeline/base/error.h"
+#include "pipeline/base/json_depth.h"
 
 namespace blockrand::importers::reference {
 namespace {
@@ -30,8 +31,12 @@ Document parse(std::string_view text) {
   Document out;
   std::unordered_set<std::string> seen;
   bool in_objects = false;
+  if (base::json_depth(text) > kDeepestJson) {
+    out.too_deep = true;
+    out.error = too_deep_text();
+    return out;
+  }
   const auto order = [&](int depth, Json::parse_event_t event, Json& parsed) {
-    if (event == Json::parse_event_t::array_start || event == Json::parse_event_t::object_start) check_depth(depth);
     if (event != Json::parse_event_t::key) return true;
     if (depth == 1) in_objects = parsed.get_ref<const std::string&>() == "CityObjects";
     if (depth == 2 && in_objects) {
@@ -42,9 +47,6 @@ Document parse(std::string_view text) {
   };
   try {
     out.json = Json::parse(text.begin(), text.end(), order);
-  } catch (const TooDeep&) {
-    out.too_deep = true;
-    out.error = too_deep_text();
   } catch (const Json::exception& error) {
     out.error = error.what();
     // "[json.exception.parse_error.101] parse error at line 1, column 5: …"

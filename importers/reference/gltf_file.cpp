@@ -13,6 +13,7 @@
 #include "importers/reference/matrix4.h"
 #include "importers/reference/meshopt_views.h"
 #include "pipeline/base/error.h"
+#include "pipeline/base/json_depth.h"
 
 namespace blockrand::importers::reference {
 namespace {
@@ -115,13 +116,10 @@ Matrix4 from_parts(const std::array<double, 3>& t, const std::array<double, 4>& 
 
 Json parse_json(const std::string& path, std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  try {
-    return Json::parse(text.begin(), text.end(), [](int depth, Json::parse_event_t event, const Json&) {
-      if (event == Json::parse_event_t::array_start || event == Json::parse_event_t::object_start) check_depth(depth);
-      return true;
-    });
-  } catch (const TooDeep&) {
+  if (base::json_depth(text) > kDeepestJson)
     throw base::InputError(path, "", too_deep_text(), "The file is damaged, or no model");
+  try {
+    return Json::parse(text.begin(), text.end());
   } catch (const Json::exception& error) {
     std::string what = error.what();
     if (const std::size_t end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);

@@ -16,17 +16,10 @@ using Json = nlohmann::json;
 
 /// Levels of a JSON text. Models have about ten, and attributes a few more; beyond, a small archive may hold gigabytes
 /// of nothing but brackets.
-inline constexpr int kDeepestJson = 512;
+inline constexpr std::size_t kDeepestJson = 512;
 
-/// What a text with more levels throws while it is parsed.
-struct TooDeep {};
-/// What to say of it.
+/// What to say of a text with more levels.
 inline std::string too_deep_text() { return "is JSON nested deeper than " + std::to_string(kDeepestJson) + " levels"; }
-
-/// For a parser's callback. \param depth  of what the event stands in, as nlohmann counts. \throws TooDeep
-inline void check_depth(int depth) {
-  if (depth >= kDeepestJson) throw TooDeep();
-}
 
 /// null where there is no such member, or `object` is none.
 inline const Json& member(const Json& object, const char* key) {

@@ -62,7 +62,7 @@ class FormatSniffer : public nlohmann::json_sax<Json> {
     return format == Format::unknown;
   }
 
-  int depth_ = 0;
+  std::size_t depth_ = 0;
   std::string key_;
 };
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "pipeline/base/json_depth.h"
 #include "pipeline/validate/cityjson_object_reader.h"
 #include "pipeline/validate/cityjson_templates.h"
 #include "pipeline/validate/detail_check.h"
@@ -18,28 +19,8 @@ using model::Point3;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-/// Levels of arrays and objects. Those of CityJSON have a dozen.
-constexpr int kDeepest = 256;
-
-/// Whether a JSON text is nested deeper than kDeepest: copying and printing values takes stack for each level.
-bool is_too_deep(std::string_view text) {
-  int depth = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quoted) {
-      if (c == '\\') ++i;
-      quoted = c != '"';
-    } else if (c == '"') {
-      quoted = true;
-    } else if (c == '[' || c == '{') {
-      if (++depth > kDeepest) return true;
-    } else if (c == ']' || c == '}') {
-      --depth;
-    }
-  }
-  return false;
-}
+/// Levels of arrays and objects. Those of CityJSON have a dozen; copying and printing values takes stack for each.
+constexpr std::size_t kDeepest = 256;
 
 /// Parses one JSON text and notices what the document forgets: members given twice, and the order of city objects.
 struct Document {
@@ -49,7 +30,7 @@ struct Document {
   std::string error;
 
   explicit Document(std::string_view text) {
-    if (is_too_deep(text)) {
+    if (base::json_depth(text) > kDeepest) {
       error = fmt::format("nested deeper than {} levels", kDeepest);
       return;
     }

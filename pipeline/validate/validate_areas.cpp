@@ -6,11 +6,13 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "pipeline/base/error.h"
+#include "pipeline/base/json_depth.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/base/side_files.h"
 #include "pipeline/base/text.h"
@@ -23,21 +25,16 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// Nothing of ours is nested as deep.
-constexpr int kDeepest = 100;
+constexpr std::size_t kDeepest = 100;
 
 /// Null for what is no JSON, or nested so deep that a walk would not end well.
 Json json_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return {};
-  bool too_deep = false;
-  Json j = Json::parse(
-      file,
-      [&](int depth, Json::parse_event_t, Json&) {
-        too_deep = too_deep || depth > kDeepest;
-        return depth <= kDeepest;
-      },
-      false);
-  return too_deep || j.is_discarded() ? Json() : j;
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (base::json_depth(text) > kDeepest) return {};
+  Json j = Json::parse(text, nullptr, false);
+  return j.is_discarded() ? Json() : j;
 }
 
 bool is_area(const std::string& name) {
