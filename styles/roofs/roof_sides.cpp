@@ -232,7 +232,7 @@ class Finder {
 
   void make_gable(std::uint32_t e, RoofSides& out) const {
     if (out.sides[e] != RoofSide::eaves) return;
-    if (kind(e) == RoofEdge::street && !request_.shape_is_mapped) return;
+    if (kind(e) == RoofEdge::street && !request_.shape_is_mapped && !request_.axis_is_mapped) return;
     out.sides[e] = RoofSide::gable;
   }
 

@@ -253,6 +253,9 @@ TEST(Mapped, ShapesKeepTheirSlopesAndDirectionsTheirAxes) {
   const auto gable_on = build_roof(rectangle(7, 15), old_town);
   EXPECT_EQ(wall_rise(gable_on->roof, 0), 5);
   EXPECT_EQ(wall_rise(gable_on->roof, 1), 0);
+  // A ridge that runs at the street by order does not turn there, whoever chose the shape.
+  old_town.shape_is_mapped = false;
+  EXPECT_EQ(wall_rise(build_roof(rectangle(7, 15), old_town)->roof, 0), 5);
 }
 
 TEST(PerimeterBlock, MappedAsOnePolygonHasARidgeAllAround) {
