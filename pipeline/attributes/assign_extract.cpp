@@ -336,6 +336,9 @@ struct DistrictAssigner::Impl {
     }
     s.use = in.extract.strings.view(b.attributes.use);
     s.area = in.footprints[building].record.area;
+    if (in.facts && building < in.facts->features.size())
+      if (const classify::FeatureVector& f = in.facts->features[building]; f.has(classify::Feature::frontage))
+        s.front = static_cast<double>(f[classify::Feature::frontage]);
     s.position = position;
     if (const std::uint32_t block = in.context.block_of[building]; block != model::kNoIndex)
       s.block = in.context.blocks[block].id;
@@ -398,6 +401,21 @@ std::vector<std::string> unanswered(std::span<const NamedPlaceQuestion> question
   for (const NamedPlaceQuestion& q : questions)
     if (!q.found && asked.contains(q.set)) out.insert(q.unanswered);
   return {out.begin(), out.end()};
+}
+
+std::vector<const districts::Preset*> presets_with_measures(const model::Region& region,
+                                                            std::span<const std::uint32_t> numbers,
+                                                            const DistrictAssigner& assigner) {
+  const std::vector<districts::Preset>& presets = assigner.book().presets;
+  std::vector<const districts::Preset*> out;
+  if (std::ranges::none_of(presets, [](const districts::Preset& p) { return p.measures.has_value(); })) return out;
+  out.resize(region.buildings.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (region.buildings[i].settled != model::ObjectState::pending) continue;
+    const std::uint32_t preset = assigner.decide(numbers[i], region.buildings[i].situation.position).preset;
+    if (preset != districts::Decision::kNone && presets[preset].measures) out[i] = &presets[preset];
+  }
+  return out;
 }
 
 void assign_region(model::Region& region, std::span<const std::uint32_t> numbers, const DistrictAssigner& assigner) {

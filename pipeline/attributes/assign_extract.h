@@ -38,6 +38,7 @@ struct AssignInputs {
   const Overrides* overrides = nullptr;
   std::span<const PinnedArea> pinned;  ///< of a build of the whole
   std::uint64_t seed = 1;
+  const evidence::FactsExtract* facts = nullptr;  ///< of fronts; null: the width of none is known
 };
 
 /// What a rule asks about a place or boundary by its name.
@@ -81,6 +82,12 @@ class DistrictAssigner {
 /// What DistrictAssigner::unanswered says. \param asked  sets that hold for a building
 std::vector<std::string> unanswered(std::span<const NamedPlaceQuestion> questions,
                                     const std::set<std::uint32_t>& asked);
+
+/// The presets of the region's buildings, parallel to them, where they state measures; null for others. Empty where no preset
+/// does. What districts decide is asked before attributes are resolved, which read it.
+std::vector<const districts::Preset*> presets_with_measures(const model::Region& region,
+                                                            std::span<const std::uint32_t> numbers,
+                                                            const DistrictAssigner& assigner);
 
 /// Fills `preset` and `preset_parameters` of the region's buildings (and `preset` of their parts, the same).
 /// \param numbers  of the buildings in the store, in their order; edges and situation are known

@@ -26,8 +26,10 @@ struct UseDefaults {
   double lowest_eaves = 0, highest_eaves = 60;  ///< m, of eaves that follow the width
   model::RoofShape roof_shape = model::RoofShape::flat;
   double roof_pitch = 38;
-  bool gable_to_street = false;  ///< of the style: narrow houses have their ridge square to the street
-  double pitched_width = 17;     ///< wider plans get a flat roof
+  bool gable_to_street = false;                ///< of the style: narrow houses have their ridge square to the street
+  std::string preset;                          ///< whose measures some of these are; empty: none's
+  std::optional<model::RoofShape> drawn_roof;  ///< by that preset
+  double pitched_width = 17;                   ///< wider plans get a flat roof
   std::string wall_material, roof_material, flat_roof_material;
   std::vector<model::Colour> wall_colours, roof_colours;
 };

@@ -52,6 +52,36 @@ const UseDefaults& with_style(const Building& building, const ResolveInputs& in,
   return storage;
 }
 
+/// The measures that a preset states. \param storage  holds them
+const UseDefaults& with_preset(const Building& building, const MappedAttributes& mapped, const ResolveInputs& in,
+                               const districts::Preset* preset, const UseDefaults& usual, UseDefaults& storage) {
+  if (preset == nullptr || !preset->measures || usual.hall) return usual;
+  const districts::PresetMeasures& m = *preset->measures;
+  if (&usual != &storage) storage = usual;
+  storage.preset = preset->name;
+  if (m.storey_height || m.ground_floor_height) {
+    const double upper = m.storey_height.value_or(usual.storey_height);
+    const double storeys = std::max(1.0, mapped.storeys ? static_cast<double>(*mapped.storeys) : usual.storeys);
+    storage.storey_height = (m.ground_floor_height.value_or(upper) + (storeys - 1) * upper) / storeys;
+  }
+  if (m.plinth) storage.plinth = *m.plinth;
+  if (m.roof_pitch) storage.roof_pitch = *m.roof_pitch;
+  if (m.gable_to_street) storage.gable_to_street = *m.gable_to_street;
+  if (!m.roof_shapes.empty()) {
+    double drawn = base::random_unit(in.seed, building.osm.key(), "preset_roof");
+    storage.drawn_roof = m.roof_shapes.back().first;
+    for (const auto& [shape, share] : m.roof_shapes) {
+      if (drawn < share) {
+        storage.drawn_roof = shape;
+        break;
+      }
+      drawn -= share;
+    }
+    storage.roof_shape = *storage.drawn_roof;
+  }
+  return storage;
+}
+
 /// m. Lower no storey of a church or hall is where storeys are tagged.
 constexpr double kLowestHallStorey = 3;
 
@@ -196,10 +226,13 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
     // An outline of a few square metres that says nothing but `yes` is no house.
     const bool small = use == "yes" && !building.outline.empty() && area < in.defaults.small_area;
     UseDefaults styled, changed, hall;
+    const auto number = static_cast<std::size_t>(&building - region.buildings.data());
+    const districts::Preset* preset = number < in.presets.size() ? in.presets[number] : nullptr;
+    const UseDefaults& of_style = with_style(building, in, small ? in.defaults.small : in.defaults.use(use), styled);
     const UseDefaults& usual =
         with_overrides(entry_of_building,
-                       with_hall(with_style(building, in, small ? in.defaults.small : in.defaults.use(use), styled),
-                                 building.mapped, building.outline, hall),
+                       with_hall(with_preset(building, building.mapped, in, preset, of_style, styled), building.mapped,
+                                 building.outline, hall),
                        changed);
     const std::uint8_t group = neighbour_group(in.defaults, use, area);
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "pipeline/context/tagged_neighbours.h"
 #include "pipeline/model/region.h"
 #include "styles/classify/catalogue.h"
+#include "styles/districts/presets.h"
 
 namespace blockrand::attributes {
 
@@ -26,6 +28,8 @@ struct ResolveInputs {
   const Overrides* overrides = nullptr;  ///< already given to the extract (apply_overrides); null: none
   /// Of Building::inferred; may be null.
   const classify::Catalogue* catalogue = nullptr;
+  /// Parallel to the region's buildings, null for most, or empty: the preset whose measures hold for one.
+  std::span<const districts::Preset* const> presets = {};
 };
 
 /// m. Of the storey behind a mansard's steep slopes, where floors are `storey_height` apart: attics are lower

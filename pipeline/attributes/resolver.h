@@ -104,6 +104,13 @@ struct Resolver {
     return usual.name == "default" ? "default for all buildings" : "usual for building=" + usual.name;
   }
 
+  // The same for what a preset states: roofs, their pitch and direction.
+  model::Source measure_source() const { return usual.preset.empty() ? usual_source() : model::Source::preset; }
+  double measure_confidence() const { return usual.preset.empty() ? usual_confidence() : kPresetConfidence; }
+  std::string measure_name() const {
+    return usual.preset.empty() ? usual_name() : "as the preset " + usual.preset + " states";
+  }
+
   /// A monument, a garage, a tank: houses around it say nothing of it.
   bool is_non_house() const { return building.style_known && building.style.non_house; }
 
@@ -134,7 +141,8 @@ struct Resolver {
   model::Sourced<model::RoofShape> roof_shape();
 
   model::Sourced<model::RoofOrientation> roof_orientation(model::RoofShape shape);
-  /// Which way the only street front looks, as wide as a gable house is; none elsewhere.
+  /// Which way the street front looks that is as wide as a gable house's: of a house at a corner that at the end of its
+  /// longer side, where a preset wants it; none elsewhere.
   std::optional<model::Point2> narrow_front() const;
 
   model::Sourced<double> roof_height(model::RoofShape shape, model::RoofOrientation orientation, double storey_height);

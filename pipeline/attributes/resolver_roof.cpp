@@ -29,6 +29,9 @@ constexpr double kNarrowestGable = 3.5, kWidestGable = 12;
 /// Of the length of walls on streets that looks the same way: less is a house at a corner, whose roof turns.
 constexpr double kOneFront = 0.9;
 
+/// Cosine of 30 degrees: an end's wall looks along the house within that.
+constexpr double kLooksAhead = 0.866;
+
 /// Full storeys under rafters: Berlin's building codes from 1887 allowed five and 22 m to the eaves, post-war ones call what has
 /// its highest floor above 22 m a tower. Of 37 houses with seven storeys and more that looked sloped 37 are tagged flat, of 29
 /// with six 14 (docs/internal/RESULTS.md, "Roofs against references").
@@ -97,6 +100,8 @@ Sourced<RoofShape> Resolver::roof_shape() {
     choices.push_back(
         {seen.value ? sloped : RoofShape::flat, seen.source, static_cast<double>(seen.confidence), seen.why});
   }
+  if (usual.drawn_roof && !wide)
+    choices.push_back({*usual.drawn_roof, Source::preset, kPresetConfidence, "drawn, " + measure_name()});
   if (agreed && (vote->value == RoofShape::flat || !wide))
     choices.push_back({vote->value, vote_source,
                        inferred_candidate.confidence > 0 ? static_cast<double>(inferred_candidate.confidence)
@@ -105,7 +110,7 @@ Sourced<RoofShape> Resolver::roof_shape() {
   if (usual.roof_shape != RoofShape::flat && wide)
     choices.push_back({RoofShape::flat, Source::geometry, kGeometryConfidence,
                        fmt::format("the plan is {:.0f} m wide, too wide for rafters", width())});
-  choices.push_back({usual.roof_shape, usual_source(), usual_confidence(), usual_name()});
+  choices.push_back({usual.roof_shape, measure_source(), measure_confidence(), measure_name()});
   return first(std::move(choices));
 }
 
@@ -134,8 +139,22 @@ std::optional<model::Point2> Resolver::narrow_front() const {
     length += std::hypot(b.x - a.x, b.y - a.y);
   }
   const double front = std::hypot(sum.x, sum.y);
-  if (front < kNarrowestGable || front > kWidestGable || front < kOneFront * length) return std::nullopt;
-  return model::Point2{sum.x / front, sum.y / front};
+  if (front >= kNarrowestGable && front <= kWidestGable && front >= kOneFront * length)
+    return model::Point2{sum.x / front, sum.y / front};
+  if (usual.preset.empty() || building.situation.position != model::BuildingPosition::corner_house) return std::nullopt;
+  // Two streets: the gable looks on the one that the house has its end on.
+  const model::Point2 longer = geometry::long_axis(ring);
+  model::Point2 end{};
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    if (part->roof_edges[i] != model::RoofEdge::street) continue;
+    const model::Point2 a = ring[i], b = ring[(i + 1) % ring.size()];
+    const model::Point2 out{b.y - a.y, a.x - b.x};
+    const double ahead = out.x * longer.x + out.y * longer.y;
+    if (std::fabs(ahead) > kLooksAhead * std::hypot(out.x, out.y)) end = {end.x + out.x, end.y + out.y};
+  }
+  const double width = std::hypot(end.x, end.y);
+  if (width < kNarrowestGable || width > kWidestGable) return std::nullopt;
+  return model::Point2{end.x / width, end.y / width};
 }
 
 Sourced<RoofOrientation> Resolver::roof_orientation(RoofShape shape) {
@@ -144,13 +163,15 @@ Sourced<RoofOrientation> Resolver::roof_orientation(RoofShape shape) {
   if (const auto across = seen_across(shape))
     choices.push_back({*across ? RoofOrientation::across : RoofOrientation::along, building.seen_roof.ridge.source,
                        static_cast<double>(building.seen_roof.ridge.confidence), building.seen_roof.ridge.why});
-  if (usual.gable_to_street && shape == RoofShape::gabled && choices.empty() && !own.roof_direction)
+  const bool may_look =
+      shape == RoofShape::gabled || (!usual.preset.empty() && shape != RoofShape::flat && shape != RoofShape::skillion);
+  if (usual.gable_to_street && may_look && choices.empty() && !own.roof_direction)
     if (const auto front = narrow_front()) {
       const model::Point2 longer = geometry::long_axis(plan().outer.points);
       const bool along =
           std::fabs(front->x * longer.x + front->y * longer.y) >= std::fabs(front->x * longer.y - front->y * longer.x);
-      choices.push_back({along ? RoofOrientation::along : RoofOrientation::across, usual_source(), usual_confidence(),
-                         "gable to the street: " + usual_name()});
+      choices.push_back({along ? RoofOrientation::along : RoofOrientation::across, measure_source(),
+                         measure_confidence(), "gable to the street: " + measure_name()});
       gable_to_street = true;
     }
   if (shape != RoofShape::flat && !own.roof_direction && part && plan().outer.size() >= 3) {
@@ -189,14 +210,14 @@ Choice<double> Resolver::usual_height(RoofShape shape, RoofOrientation orientati
       plan().outer.size() < 3 ? roofs::MainSlope{} : roofs::main_slope(plan(), request, true);
   const auto* edges = model::constructed_as<model::EdgeRoof>(shape);
   if (edges && edges->eaves == model::EavesProfile::berlin)
-    return {slope.run, usual_source(), usual_confidence(),
+    return {slope.run, measure_source(), measure_confidence(),
             "60 degrees to the street, 8 to the yard, a knee wall there"};
   if (edges && edges->eaves == model::EavesProfile::broken) {
     const double run = roofs::main_slope(plan(), request, false).run, attic = attic_height(usual.storey_height);
     // Below an attic's height there is no storey in it: the pitch alone counts.
     if (run * roofs::kMansardSteep > 2 * attic)
       return {
-          roofs::mansard_height(run, attic), usual_source(), usual_confidence(),
+          roofs::mansard_height(run, attic), measure_source(), measure_confidence(),
           fmt::format("an attic storey of {:.1f} m behind 68 degrees, 26 above, over a run of {:.1f} m", attic, run)};
   }
   double pitch = std::min(usual_pitch(shape, usual.roof_pitch), options.max_roof_pitch);
@@ -205,10 +226,10 @@ Choice<double> Resolver::usual_height(RoofShape shape, RoofOrientation orientati
   usual_pitch_asked = pitch;
   if (height > options.max_usual_roof_height && pitch <= usual.roof_pitch) {
     usual_pitch_asked = 0;
-    return {options.max_usual_roof_height, usual_source(), usual_confidence(),
+    return {options.max_usual_roof_height, measure_source(), measure_confidence(),
             fmt::format("the highest usual roof, over a run of {:.1f} m", slope.run)};
   }
-  return {height, usual_source(), usual_confidence(),
+  return {height, measure_source(), measure_confidence(),
           fmt::format("pitch of {:.0f} degrees over a run of {:.1f} m", pitch, slope.run)};
 }
 

@@ -96,7 +96,8 @@ attributes::AssignInputs assign_inputs(const BuildOptions& options, const BuildI
           .neighbour_minimum = options.generate.neighbour_minimum,
           .overrides = &inputs.overrides,
           .pinned = located.facts.areas,
-          .seed = options.seed};
+          .seed = options.seed,
+          .facts = &prepared.facts};
 }
 
 // ---- the tiles

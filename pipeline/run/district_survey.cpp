@@ -133,7 +133,8 @@ attributes::AssignInputs DistrictSurvey::inputs(const evidence::StyleExtract& st
           .neighbour_minimum = neighbour_minimum,
           .overrides = &overrides,
           .pinned = {},
-          .seed = seed};
+          .seed = seed,
+          .facts = &prepared->facts};
 }
 
 std::vector<std::uint32_t> DistrictSurvey::buildings() const {

@@ -122,7 +122,21 @@ struct TileKeys::Impl {
     if (preset == districts::Decision::kNone) return;
     const std::string& name = in.assigner.book().presets[preset].name;
     out << name;
+    pack_measures(number, out);
     if (const auto rules = grammars.find(name); rules != grammars.end()) out << rules->second;
+  }
+
+  /// Of the preset, what attributes read of it.
+  void pack_measures(std::uint32_t number, Packer& out) const {
+    const districts::Decision d = in.assigner.decide(number, in.styles.facts.places[number].position);
+    const districts::Preset* preset =
+        d.preset == districts::Decision::kNone ? nullptr : &in.assigner.book().presets[d.preset];
+    out << (preset && preset->measures);
+    if (!preset || !preset->measures) return;
+    const districts::PresetMeasures& m = *preset->measures;
+    out << preset->name << m.ground_floor_height << m.storey_height << m.plinth << m.roof_pitch << m.gable_to_street;
+    out << static_cast<std::uint64_t>(m.roof_shapes.size());
+    for (const auto& [shape, share] : m.roof_shapes) out << shape << share;
   }
 
   /// What the stages up to the attributes see around buildings.
@@ -196,6 +210,7 @@ TileKey TileKeys::key(std::size_t shard, std::size_t place) const {
     in.pack_mapped_objects(tiles.shards[its].seeds[other - tiles.repaired.first[its]], around);
     in.pack_outline(other, around);
     in.pack_class(other, around);
+    in.pack_measures(other, around);
     box.include(tiles.repaired.footprints[other].box);
   }
   // Mapped parts may stand outside of their outline.

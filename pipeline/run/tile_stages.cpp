@@ -76,13 +76,15 @@ Region resolve_buildings(const footprints::Shard& shard, std::span<const std::ui
   in.context_time += std::chrono::nanoseconds(std::chrono::steady_clock::now() - start).count();
   evidence::put_styles(region, numbers, in.styles, explain);
   if (in.imagery) observation::put_seen_roofs(region, numbers, *in.imagery);
+  const auto presets = attributes::presets_with_measures(region, numbers, in.assigner);
   attributes::resolve_attributes(region,
                                  {.defaults = in.defaults,
                                   .neighbours = in.neighbours,
                                   .seed = in.seed,
                                   .ground = in.ground,
                                   .overrides = &in.overrides,
-                                  .catalogue = &in.styles.tables.catalogue},
+                                  .catalogue = &in.styles.tables.catalogue,
+                                  .presets = presets},
                                  in.generate);
   return region;
 }

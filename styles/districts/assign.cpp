@@ -117,6 +117,7 @@ bool fires(const Rule& rule, const Subject& s, const SubjectStyle& subject_style
   if (!any(w.positions, s.position) || !any(w.substyles, subject_style.substyle) || !any(w.uses, s.use)) return false;
   if (!w.substyles.empty() && subject_style.substyle_p < w.probability - kMargin) return false;
   if (w.area && !w.area->holds(s.area)) return false;
+  if (w.front && !(s.front && w.front->holds(*s.front))) return false;
   if (!w.eras.empty()) {
     const bool in_eras = subject_style.years ? any(w.eras, model::era_of(subject_style.years->middle()))
                                              : sum_of(w.eras, subject_style) >= w.probability - kMargin;
@@ -225,6 +226,7 @@ std::string conditions(const RuleSet& set, const Rule& rule, const Subject& s, c
         fmt::format("style {} with {:.0f} % of its class", subject_style.substyle, 100 * subject_style.substyle_p));
   if (!w.uses.empty()) words.push_back("building=" + std::string(s.use));
   if (w.area) words.push_back(fmt::format("{:.0f} m2", s.area));
+  if (w.front) words.push_back(fmt::format("a front of {:.1f} m", s.front.value_or(0)));
   if (w.storeys) words.push_back(fmt::format("{:g} storeys", s.storeys().value_or(0)));
   if (!w.positions.empty()) words.push_back(position_text(s.position));
   for (const TagTest& t : w.tags) words.push_back("tagged " + t.text());

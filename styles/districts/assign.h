@@ -21,6 +21,7 @@ struct Subject {
   std::string_view substyle;                    ///< id in the catalogue; empty: none. `style` has its probability
   std::string_view use;                         ///< value of building=*
   double area = 0;                              ///< m²
+  std::optional<double> front;                  ///< m, width of the main front; empty: none on a street
   model::BuildingPosition position = model::BuildingPosition::unknown;
   std::string_view block;             ///< id of its block; empty: none
   std::string_view overridden_style;  ///< class or sub-style that an override gives

@@ -1,10 +1,39 @@
 #include "styles/districts/presets.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "pipeline/base/toml_file.h"
 
 namespace blockrand::districts {
+namespace {
+
+constexpr double kShareSlack = 0.01;  // of shares that shall sum to 1
+
+PresetMeasures read_measures(base::TomlTable& table) {
+  PresetMeasures out;
+  out.ground_floor_height = table.number("ground_floor_height", 2, 10);
+  out.storey_height = table.number("storey_height", 2, 10);
+  out.plinth = table.number("plinth", 0, 3);
+  out.roof_pitch = table.number("roof_pitch", 1, 85);
+  out.gable_to_street = table.boolean("gable_to_street");
+  if (auto shares = table.table("roof")) {
+    double sum = 0;
+    for (const std::string& name : shares->keys()) {
+      const auto shape = model::roof_shape(name);
+      if (!shape) shares->fail(name, "is no shape of a roof", "docs/roofs.md lists them.");
+      out.roof_shapes.emplace_back(*shape, shares->number(name, 0, 1).value_or(0));
+      sum += out.roof_shapes.back().second;
+    }
+    shares->finish();
+    if (std::abs(sum - 1) > kShareSlack)
+      table.fail("roof", "has shares that do not sum to 1", "They are of all roofs.");
+  }
+  table.finish();
+  return out;
+}
+
+}  // namespace
 
 Preset read_preset(const std::string& name, base::TomlTable table) {
   Preset preset;
@@ -24,6 +53,7 @@ Preset read_preset(const std::string& name, base::TomlTable table) {
     for (const std::string& key : values->keys()) preset.attributes.emplace_back(key, values->text(key).value_or(""));
     values->finish();
   }
+  if (auto measures = table.table("measures")) preset.measures = read_measures(*measures);
   table.finish();
   return preset;
 }

@@ -4,8 +4,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "pipeline/model/roof_shape.h"
 #include "pipeline/model/style.h"
 
 namespace blockrand::base {
@@ -13,6 +15,16 @@ class TomlTable;
 }
 
 namespace blockrand::districts {
+
+/// What a preset says of houses that wear it where no tag does. Metres and degrees; what is empty is that of the style.
+struct PresetMeasures {
+  std::optional<double> ground_floor_height;                     ///< floor to floor
+  std::optional<double> storey_height;                           ///< of the other storeys, floor to floor
+  std::optional<double> plinth;                                  ///< from the ground up to the ground floor
+  std::vector<std::pair<model::RoofShape, double>> roof_shapes;  ///< shares, sum 1: one is drawn for each house
+  std::optional<double> roof_pitch;                              ///< above 0
+  std::optional<bool> gable_to_street;  ///< true: the ridge runs square to the street where the lot is narrow
+};
 
 struct Preset {
   std::string name;
@@ -23,6 +35,7 @@ struct Preset {
   /// The same for what stands on its roof; none: the usual one (roofscape.cga); empty: nothing stands there.
   std::optional<std::string> roof_grammar{};
   std::vector<std::pair<std::string, std::string>> attributes{};  ///< values of the rule files' attributes, by name
+  std::optional<PresetMeasures> measures{};
   std::string declared_in{};  ///< file of the rule set; empty: of the list of presets
 };
 

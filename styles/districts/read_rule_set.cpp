@@ -364,6 +364,7 @@ class Reader {
     which.uses = one_or_more(table, "use");
     which.area = interval(table, "area", 0, 1e7);
     which.storeys = interval(table, "storeys", 0, 200);
+    which.front = interval(table, "front", 0, 1e4);
     for (const std::string& position : one_or_more(table, "position"))
       which.positions.push_back(static_cast<model::BuildingPosition>(
           1 + index_of(table, "position", position, position_names(), "position in a block")));

@@ -81,7 +81,7 @@ struct Which {
   std::vector<model::Era> eras;              ///< the likeliest era is one of them
   std::optional<Interval> years;             ///< meets the tagged years of construction
   std::vector<std::string> substyles, uses;  ///< substyles: the likeliest is one of them, with at least `probability`
-  std::optional<Interval> area, storeys;
+  std::optional<Interval> area, storeys, front;
   std::vector<model::BuildingPosition> positions;
   std::vector<TagTest> tags;  ///< all must hold
   std::optional<bool> house;  ///< false: monuments, garages and the like only
