@@ -215,6 +215,7 @@ void tell_roofs(const City& model, SideFacts& model_side, const City& reference,
     if (planes.seen < 0.5) continue;  // half a roof has no form
     side->roof_form = form_of_planes(planes);
     if (planes.sloped > 0 && side->roof_form != RoofForm::flat) side->pitch = planes.pitch;
+    if (side->roof_form == RoofForm::gabled) side->fall = planes.directions[0];
   }
 }
 
@@ -243,6 +244,9 @@ void measure_bodies(const City& model, const SideFacts& a, const City& reference
     set(Measure::roof_volume_ratio, *a.roof_volume / *b.roof_volume, *b.roof_volume);
   if (a.roof_form != RoofForm::none && b.roof_form != RoofForm::none)
     set(Measure::roof_type_agrees, a.roof_form == b.roof_form ? 1 : 0);
+  constexpr double kSameRidge = 30;  // degrees
+  if (a.fall && b.fall)
+    set(Measure::ridge_agrees, std::fabs(std::remainder(*a.fall - *b.fall, 180.0)) <= kSameRidge ? 1 : 0);
   if (a.pitch && b.pitch) set(Measure::roof_pitch_error, *a.pitch - *b.pitch);
   if (a.surface_area > 0) set(Measure::semantic_model, 1 - a.unclassified_area / a.surface_area, a.surface_area);
   if (b.surface_area > 0) set(Measure::semantic_reference, 1 - b.unclassified_area / b.surface_area, b.surface_area);

@@ -46,6 +46,7 @@ struct SideFacts {
   std::optional<double> volume;                  ///< m³; without closed shells none
   std::optional<double> roof_volume;             ///< m³ between the roof and the own ground, over the footprint
   std::optional<double> pitch;                   ///< degrees, mean of the sloped part of the roof
+  std::optional<double> fall;  ///< degrees clockwise from north, down one slope of a gabled roof: square to its ridge
   RoofForm roof_form = RoofForm::none;
   std::size_t solids = 0, valid_solids = 0;
   std::map<std::string, std::size_t> defects;  ///< "302 shell not closed" → solids

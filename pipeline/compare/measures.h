@@ -70,6 +70,8 @@ enum class Scope : std::uint8_t {
   X(normal_deviation, "deg", lower, mean, surface, "normal deviation",                                                \
     "angle between a face and the nearest one of the other model, both ways, weighted by area")                       \
   X(roof_type_agrees, "1", higher, mean, body, "roof type", "1 where the form that the planes show is the same")      \
+  X(ridge_agrees, "1", higher, mean, body, "ridge direction",                                                         \
+    "1 where ridges run within 30 degrees of each other; where both roofs are gabled")                                \
   X(roof_pitch_error, "deg", zero, mean, body, "roof pitch error",                                                    \
     "mean pitch of the sloped part, where both have one")                                                             \
   X(storeys_error, "1", zero, mean, facades, "storeys error", "rows of openings; else as stated")                     \

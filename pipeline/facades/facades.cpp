@@ -101,6 +101,7 @@ class FacadeBuilder {
     if (furnished_) {
       mass->roof = std::move(furnished_->roof);
       part.lod3.roof_elements = mass->roof.elements;
+      part.lod3.roof_fronts = std::move(furnished_->fronts);
     }
   }
 

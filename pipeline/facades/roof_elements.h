@@ -47,14 +47,7 @@ struct WindowAxes {
   std::vector<model::Point2> places;
 };
 
-/// An upright front on the roof.
-struct RoofFront {
-  model::RoofElementKind kind = model::RoofElementKind::dormer;
-  std::uint32_t face = 0;      ///< of the new solid: a front of its own, or the wall that a cross gable is part of
-  std::int32_t edge = -1;      ///< the plan edge below
-  model::Point2 middle;        ///< of its lower border on the plan
-  double width = 0, foot = 0;  ///< m; height of its lower border above the height reference
-};
+using model::RoofFront;
 
 /// A body's envelope with its roof's elements.
 struct FurnishedRoof {

@@ -65,7 +65,8 @@ struct Detail {
   std::vector<Placement> placements;
   std::vector<WallInstallation> installations;
   std::vector<RoofElementKind>
-      roof_elements;  ///< dormers and cross gables that the solid has, in the order they were built
+      roof_elements;                   ///< dormers and cross gables that the solid has, in the order they were built
+  std::vector<RoofFront> roof_fronts;  ///< theirs
   std::vector<RoofInstallation> roof_installations;  ///< chimneys, roof windows, with their triangles
 };
 

@@ -45,7 +45,7 @@ enum class IssueClass : std::uint8_t {
   X(opening_left_out, "OPENING_LEFT_OUT", fallback,                                                                  \
     "Windows or doors did not fit their walls; the others were built.")                                              \
   X(roof_element_left_out, "ROOF_ELEMENT_LEFT_OUT", fallback,                                                        \
-    "Chimneys or roof windows did not fit; the others were built.")                                                  \
+    "Chimneys, gables, dormers or roof windows did not fit; the others were built.")                                 \
   X(grammar_error, "GRAMMAR_ERROR", fallback,                                                                        \
     "A rule asked for what cannot be made; the rest of the facade was built.")                                       \
   X(plan_simplified, "PLAN_SIMPLIFIED", fallback, "The plan was simplified to get a valid solid.")                   \
@@ -86,7 +86,8 @@ enum class IssueClass : std::uint8_t {
     "A roof along whole facades does not fit the plan; every bay has its own slopes.")                               \
   X(override_unmatched, "OVERRIDE_UNMATCHED", notice,                                                                \
     "An entry of the overrides has nothing in the extract to act on.")                                               \
-  X(text_cleaned, "TEXT_CLEANED", notice, "Characters that no XML file may hold were replaced in a tag.")
+  X(text_cleaned, "TEXT_CLEANED", notice, "Characters that no XML file may hold were replaced in a tag.")            \
+  X(requirement_missed, "REQUIREMENT_MISSED", notice, "The house, as built, misses a measure that its preset states.")
 
 enum class IssueCode : std::uint8_t {
 #define X(code, text, klass, meaning) code,

@@ -49,4 +49,13 @@ struct RoofInstallation {
   SolidTriangles triangles;  ///< empty until LoD3 is built
 };
 
+/// The upright front of a dormer or cross gable.
+struct RoofFront {
+  RoofElementKind kind = RoofElementKind::dormer;
+  std::uint32_t face = 0;      ///< of the LoD3 solid: a front of its own, or the wall that a cross gable is part of
+  std::int32_t edge = -1;      ///< the edge of the built plan below
+  Point2 middle;               ///< of its lower border on the plan
+  double width = 0, foot = 0;  ///< m; height of its lower border above the height reference
+};
+
 }  // namespace blockrand::model

@@ -63,6 +63,15 @@ void pack_rows(std::span<const model::ReportRow> rows, model::OsmId id, Packer& 
   out << std::span<const model::ReportRow>(first, last);
 }
 
+void pack_requirements(const districts::Preset& preset, Packer& out) {
+  out << preset.requirements.has_value();
+  if (!preset.requirements) return;
+  const districts::PresetRequirements& r = *preset.requirements;
+  out << r.upper_storeys << r.upper_windows_from << r.door_height << r.window_ratio << r.ground_window_ratio << r.gable_window_ratio
+      << r.windows_in_line << r.gable_windows_smaller << r.ornamental_gable << r.gable_overtop << r.roof_shapes
+      << r.roof_element_width << r.roof_element_distance << r.roof_eaves_distance << r.roof_side_distance;
+}
+
 }  // namespace
 
 struct TileKeys::Impl {
@@ -158,6 +167,7 @@ TileKeys::TileKeys(const TileInputs& inputs, const BuildInputs& files, std::stri
     if (!entry) continue;
     Packer rules;
     rules << entry->file << preset.attributes;
+    pack_requirements(preset, rules);
     for (const std::string& path : files.grammars->files_of(preset.name)) {
       std::string& hash = hashes[path];
       if (hash.empty()) hash = base::sha256_file(path);

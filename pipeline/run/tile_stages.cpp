@@ -9,6 +9,7 @@
 #include "pipeline/attributes/resolve.h"
 #include "pipeline/context/wall_segments.h"
 #include "pipeline/facades/facades.h"
+#include "pipeline/facades/requirements.h"
 #include "pipeline/facades/roof_edges.h"
 #include "pipeline/facades/roof_installations.h"
 #include "pipeline/footprints/load.h"
@@ -164,6 +165,7 @@ Region run_tile(std::size_t shard, const TileInputs& in) {
           return outlines;
         });
   }
+  if (in.lod >= 3 && in.grammars) facades::check_requirements(region, built, in.assigner.book().presets);
   masses::tell_part_overlaps(region);
   return region;
 }

@@ -33,6 +33,33 @@ PresetMeasures read_measures(base::TomlTable& table) {
   return out;
 }
 
+PresetRequirements read_requirements(base::TomlTable& table) {
+  PresetRequirements out;
+  out.upper_storeys = table.numbers("upper_storeys").value_or(std::vector<double>{});
+  if (!out.upper_storeys.empty() && (out.upper_storeys.size() != 2 || out.upper_storeys[0] > out.upper_storeys[1]))
+    table.fail("upper_storeys", "is no range", "Write [least, most].");
+  out.upper_windows_from = table.number("upper_windows_from", 0, 20);
+  out.door_height = table.number("door_height", 0, 10);
+  out.window_ratio = table.number("window_ratio", 0, 10);
+  out.ground_window_ratio = table.number("ground_window_ratio", 0, 10);
+  out.gable_window_ratio = table.number("gable_window_ratio", 0, 10);
+  out.windows_in_line = table.boolean("windows_in_line").value_or(false);
+  out.gable_windows_smaller = table.boolean("gable_windows_smaller").value_or(false);
+  out.ornamental_gable = table.boolean("ornamental_gable");
+  out.gable_overtop = table.number("gable_overtop", 0, 5);
+  for (const std::string& name : table.texts("roof_shapes").value_or(std::vector<std::string>{})) {
+    const auto shape = model::roof_shape(name);
+    if (!shape) table.fail("roof_shapes", "`" + name + "` is no shape of a roof", "docs/roofs.md lists them.");
+    out.roof_shapes.push_back(*shape);
+  }
+  out.roof_element_width = table.number("roof_element_width", 0, 50);
+  out.roof_element_distance = table.number("roof_element_distance", 0, 50);
+  out.roof_eaves_distance = table.number("roof_eaves_distance", 0, 50);
+  out.roof_side_distance = table.number("roof_side_distance", 0, 50);
+  table.finish();
+  return out;
+}
+
 }  // namespace
 
 Preset read_preset(const std::string& name, base::TomlTable table) {
@@ -54,6 +81,7 @@ Preset read_preset(const std::string& name, base::TomlTable table) {
     values->finish();
   }
   if (auto measures = table.table("measures")) preset.measures = read_measures(*measures);
+  if (auto asked = table.table("requirements")) preset.requirements = read_requirements(*asked);
   table.finish();
   return preset;
 }

@@ -26,6 +26,26 @@ struct PresetMeasures {
   std::optional<bool> gable_to_street;  ///< true: the ridge runs square to the street where the lot is narrow
 };
 
+/// What a preset promises of the houses that wear it: measured on the finished house, each miss is told (REQUIREMENT_MISSED).
+/// Metres and ratios; what is empty asks nothing. The set is Holtmeier's (2020, section 5).
+struct PresetRequirements {
+  std::vector<double> upper_storeys;                 ///< [least, most] above the ground floor; or empty
+  std::optional<double> upper_windows_from;   ///< above the ground floor's level: a high ground floor below them
+  std::optional<double> door_height;          ///< at least
+  std::optional<double> window_ratio;         ///< height over width of upper windows, at least
+  std::optional<double> ground_window_ratio;  ///< the same in the ground floor
+  std::optional<double> gable_window_ratio;   ///< the same above the eaves
+  bool windows_in_line = false;          ///< equal, as far from each other, in line; farther from the front's edges
+  bool gable_windows_smaller = false;    ///< than those of the upper storeys
+  std::optional<bool> ornamental_gable;  ///< whether one stands before the roof
+  std::optional<double> gable_overtop;   ///< over the ridge behind it, at least
+  std::vector<model::RoofShape> roof_shapes;    ///< one of them
+  std::optional<double> roof_element_width;     ///< of dormers and cross gables, at most
+  std::optional<double> roof_element_distance;  ///< from each other, at least
+  std::optional<double> roof_eaves_distance;    ///< of dormers, along the slope, at least
+  std::optional<double> roof_side_distance;     ///< from the ends of the wall below, at least
+};
+
 struct Preset {
   std::string name;
   std::string description;  ///< one line
@@ -36,6 +56,7 @@ struct Preset {
   std::optional<std::string> roof_grammar{};
   std::vector<std::pair<std::string, std::string>> attributes{};  ///< values of the rule files' attributes, by name
   std::optional<PresetMeasures> measures{};
+  std::optional<PresetRequirements> requirements{};
   std::string declared_in{};  ///< file of the rule set; empty: of the list of presets
 };
 

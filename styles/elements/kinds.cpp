@@ -46,7 +46,7 @@ void add(Parameters& to, Parameters more) {
 Parameters opening(double reveal, double least_reveal, const char* head) {
   return {
       number("reveal", "m", reveal, least_reveal, 0.40, "depth of the opening: wall's plane to the front of the frame"),
-      word("head", {"straight", "segmental", "round", "gabled"}, head, "shape of the upper edge"),
+      word("head", {"straight", "segmental", "round", "gabled", "pointed", "basket"}, head, "shape of the upper edge"),
       number("rise", "of the width", 0.12, 0.04, 0.50, "height of segmental and gabled heads")};
 }
 
@@ -251,10 +251,10 @@ ElementKind surround_kind() {
                 .meaning = "band round an opening on its own, with keystone; lower edge open",
                 .width = {.measures = "opening", .least = 0.40, .usual = 1.10, .most = 6.00},
                 .height = {.measures = "opening", .least = 0.40, .usual = 2.20, .most = 6.00}};
-  k.parameters = {
-      word("head", {"straight", "segmental", "round", "gabled"}, "straight", "shape of the opening's upper edge"),
-      number("rise", "of the width", 0.12, 0.04, 0.50, "height of segmental and gabled heads"),
-      word("foot", {"open", "closed"}, "open", "closed: the band runs along the lower edge too")};
+  k.parameters = {word("head", {"straight", "segmental", "round", "gabled", "pointed", "basket"}, "straight",
+                       "shape of the opening's upper edge"),
+                  number("rise", "of the width", 0.12, 0.04, 0.50, "height of segmental and gabled heads"),
+                  word("foot", {"open", "closed"}, "open", "closed: the band runs along the lower edge too")};
   Parameters band = surround("moulded", 0.16);
   band[0].words = {"plain", "moulded", "double_cornice", "brick"};
   band[0].initial = 1;

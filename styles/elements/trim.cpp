@@ -112,6 +112,8 @@ OpeningShape opening_shape(const Request& r) {
     shape.head = head == "segmental" ? Head::segmental
                  : head == "round"   ? Head::round
                  : head == "gabled"  ? Head::gabled
+                 : head == "pointed" ? Head::pointed
+                 : head == "basket"  ? Head::basket
                                      : Head::straight;
     shape.rise = r.values.number("rise");
   }

@@ -190,7 +190,7 @@ std::string_view consequence_words(std::string_view code) {
       {"LOD1_ONLY", "no sound roof could be built, so it is a plain block"},
       {"FACADE_FAILED", "its windows could not be cut into the walls, so the walls are closed"},
       {"OPENING_LEFT_OUT", "some windows or doors did not fit and are missing"},
-      {"ROOF_ELEMENT_LEFT_OUT", "some chimneys or roof windows did not fit and are missing"},
+      {"ROOF_ELEMENT_LEFT_OUT", "some chimneys, gables, dormers or roof windows did not fit and are missing"},
       {"GRAMMAR_ERROR", "a rule for its front failed, so something of the front is missing"},
       {"PLAN_SIMPLIFIED", "its outline was simplified, or no sound body could have been built"},
       {"REST_FAILED", "what its mapped parts leave free could not be built, so a piece may be missing"},

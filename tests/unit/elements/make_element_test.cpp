@@ -169,6 +169,18 @@ TEST(Windows, OpeningsHaveTheirHeads) {
     EXPECT_NEAR(dx * dx + dy * dy, 0.25, 0.002) << "on the circle";
   }
   EXPECT_NEAR(made("casement_window", 1, 2, {{"reveal", 0.2}}).opening.reveal, 0.2, 0);
+  const Outline pointed = made("casement_window", 1, 3, {{"head", "pointed"}, {"detail", 2.0}}).opening.outline;
+  double top = 0;
+  for (const model::Point2 p : pointed) top = std::max(top, p.y);
+  EXPECT_EQ(top, 3);
+  for (const model::Point2 p : pointed) {  // about the opposite springing, as far as the width
+    if (p.y > 3 - 0.866 && p.x != 0) {
+      EXPECT_NEAR(std::hypot(p.x + (p.x > 0 ? 0.5 : -0.5), p.y - (3 - 0.866)), 1, 0.002);
+    }
+  }
+  const Outline basket = made("casement_window", 1.5, 2, {{"head", "basket"}}).opening.outline;
+  for (std::size_t i = 2; i < basket.size(); ++i)
+    EXPECT_NEAR(std::hypot(basket[i].x / 0.75, (basket[i].y - 1.5) / 0.5), 1, 0.003) << "on the ellipse";
 }
 
 TEST(Windows, LeavesTransomAndBarsAreWhatWasAskedFor) {

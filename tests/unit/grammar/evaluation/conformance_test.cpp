@@ -207,6 +207,22 @@ TEST(Conformance, Row24SlopeSelectors) {
   }
 }
 
+TEST(Conformance, FacesOfDormersAndCrossGablesByName) {
+  // A dormer's body: a box with a gable roof. Every face can be told and goes on by itself (Holtmeier 3.3: component split).
+  const auto d = derive_text(
+      "Lot --> extrude(1.5) comp(f){ front : Front | left : Cheek. | right : Cheek. | top : Roof | bottom : NIL | back : Back. }\n"
+      "Roof --> roofGable(45) comp(f){ bottom : NIL | aslant : Slope. | vertical : Gable. }\n"
+      "Front --> split(x){ ~1 : Wall. | 0.9 : Window. | ~1 : Wall. }",
+      rectangle(1.4, 2));
+  EXPECT_EQ(count(d, "Window."), 1u);
+  EXPECT_EQ(count(d, "Wall."), 2u);
+  EXPECT_EQ(count(d, "Cheek."), 2u);
+  EXPECT_EQ(count(d, "Back."), 1u);
+  EXPECT_EQ(count(d, "Slope."), 2u);
+  EXPECT_EQ(count(d, "Gable."), 2u);
+  EXPECT_NEAR(area(d, "Gable."), 2 * 0.5 * 1.4 * 0.7, kTolerance);
+}
+
 TEST(Conformance, Row25Offset) {
   const auto d = derive_text("Lot --> offset(-1) comp(f){ inside = N. | border = B. }", rectangle(10, 20));
   EXPECT_NEAR(area(d, "N."), 144, kTolerance);
