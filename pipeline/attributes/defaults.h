@@ -26,10 +26,12 @@ struct UseDefaults {
   double lowest_eaves = 0, highest_eaves = 60;  ///< m, of eaves that follow the width
   model::RoofShape roof_shape = model::RoofShape::flat;
   double roof_pitch = 38;
-  bool gable_to_street = false;                ///< of the style: narrow houses have their ridge square to the street
-  std::string preset;                          ///< whose measures some of these are; empty: none's
-  std::optional<model::RoofShape> drawn_roof;  ///< by that preset
-  double pitched_width = 17;                   ///< wider plans get a flat roof
+  bool gable_to_street = false;  ///< of the style: narrow houses have their ridge square to the street
+  std::string preset;            ///< that states roof, pitch or direction; empty: none does
+  std::string heights_preset;    ///< that states heights of storeys; empty: none does
+  double ground_floor_height = 0, upper_storey_height = 0;  ///< m, of that preset
+  std::optional<model::RoofShape> drawn_roof;               ///< by that preset
+  double pitched_width = 17;                                ///< wider plans get a flat roof
   std::string wall_material, roof_material, flat_roof_material;
   std::vector<model::Colour> wall_colours, roof_colours;
 };

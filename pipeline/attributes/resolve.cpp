@@ -55,14 +55,19 @@ const UseDefaults& with_style(const Building& building, const ResolveInputs& in,
 /// The measures that a preset states. \param storage  holds them
 const UseDefaults& with_preset(const Building& building, const MappedAttributes& mapped, const ResolveInputs& in,
                                const districts::Preset* preset, const UseDefaults& usual, UseDefaults& storage) {
-  if (preset == nullptr || !preset->measures || usual.hall) return usual;
+  if (preset == nullptr || !preset->measures || usual.hall || building.style.non_house ||
+      !follows_style(in.defaults, usual))
+    return usual;
   const districts::PresetMeasures& m = *preset->measures;
   if (&usual != &storage) storage = usual;
-  storage.preset = preset->name;
+  if (m.roof_pitch || m.gable_to_street || !m.roof_shapes.empty()) storage.preset = preset->name;
   if (m.storey_height || m.ground_floor_height) {
     const double upper = m.storey_height.value_or(usual.storey_height);
     const double storeys = std::max(1.0, mapped.storeys ? static_cast<double>(*mapped.storeys) : usual.storeys);
-    storage.storey_height = (m.ground_floor_height.value_or(upper) + (storeys - 1) * upper) / storeys;
+    storage.heights_preset = preset->name;
+    storage.upper_storey_height = upper;
+    storage.ground_floor_height = m.ground_floor_height.value_or(upper);
+    storage.storey_height = (storage.ground_floor_height + (storeys - 1) * upper) / storeys;
   }
   if (m.plinth) storage.plinth = *m.plinth;
   if (m.roof_pitch) storage.roof_pitch = *m.roof_pitch;
@@ -229,11 +234,11 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
     const auto number = static_cast<std::size_t>(&building - region.buildings.data());
     const districts::Preset* preset = number < in.presets.size() ? in.presets[number] : nullptr;
     const UseDefaults& of_style = with_style(building, in, small ? in.defaults.small : in.defaults.use(use), styled);
-    const UseDefaults& usual =
-        with_overrides(entry_of_building,
-                       with_hall(with_preset(building, building.mapped, in, preset, of_style, styled), building.mapped,
-                                 building.outline, hall),
-                       changed);
+    const UseDefaults& usual = with_overrides(
+        entry_of_building,
+        with_hall(small ? of_style : with_preset(building, building.mapped, in, preset, of_style, styled),
+                  building.mapped, building.outline, hall),
+        changed);
     const std::uint8_t group = neighbour_group(in.defaults, use, area);
 
     std::vector<model::ReportRow> conflicts;

@@ -104,6 +104,15 @@ struct Resolver {
     return usual.name == "default" ? "default for all buildings" : "usual for building=" + usual.name;
   }
 
+  /// m, mean of so many storeys: a preset may state the ground floor's height apart.
+  double storey_height_of(double count) const {
+    if (usual.heights_preset.empty()) return usual.storey_height;
+    const double n = std::max(1.0, count);
+    return (usual.ground_floor_height + (n - 1) * usual.upper_storey_height) / n;
+  }
+  std::string heights_name() const {
+    return usual.heights_preset.empty() ? usual_name() : "as the preset " + usual.heights_preset + " states";
+  }
   // The same for what a preset states: roofs, their pitch and direction.
   model::Source measure_source() const { return usual.preset.empty() ? usual_source() : model::Source::preset; }
   double measure_confidence() const { return usual.preset.empty() ? usual_confidence() : kPresetConfidence; }

@@ -127,10 +127,12 @@ void Resolver::heights(Attributes& a) {
   a.roof_shape = roof_shape();
   a.roof_orientation = roof_orientation(a.roof_shape.value);
   a.storeys = storeys();
-  a.storey_height = make<double>(usual.storey_height, usual_source(), usual_confidence(), usual_name());
+  a.storey_height =
+      make<double>(storey_height_of(a.storeys.value), usual.heights_preset.empty() ? usual_source() : Source::preset,
+                   usual.heights_preset.empty() ? usual_confidence() : kPresetConfidence, heights_name());
   a.roof_storeys = own.roof_storeys ? make<double>(*own.roof_storeys, Source::tag, kTagConfidence, "tagged")
                                     : make<double>(0, Source::default_, kDefaultConfidence, "none tagged");
-  a.roof_height = roof_height(a.roof_shape.value, a.roof_orientation.value, std::min(usual.storey_height, 3.0));
+  a.roof_height = roof_height(a.roof_shape.value, a.roof_orientation.value, std::min(a.storey_height.value, 3.0));
   const MappedAttributes* height_from = own.height                                        ? &own
                                         : outline && !has_own_height() && outline->height ? outline
                                                                                           : nullptr;

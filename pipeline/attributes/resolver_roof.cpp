@@ -72,12 +72,16 @@ Sourced<RoofShape> Resolver::roof_shape() {
     // A direction alone means one slope, storeys or an angle mean two, or what sloped roof is usual here.
     const bool one_slope = own.roof_direction && !own.roof_orientation && !tags_speak_of_slope();
     const bool as_usual = agreed && vote->value != RoofShape::flat && vote->value != RoofShape::other;
+    const bool drawn = usual.drawn_roof && *usual.drawn_roof != RoofShape::flat;
     choices.push_back({one_slope  ? RoofShape::skillion
+                       : drawn    ? *usual.drawn_roof
                        : as_usual ? vote->value
                                   : RoofShape::gabled,
                        Source::implied, kImpliedConfidence,
-                       as_usual && !one_slope ? "other roof tags speak of a slope, neighbours of this one"
-                                              : "other roof tags speak of a slope"});
+                       one_slope  ? "other roof tags speak of a slope"
+                       : drawn    ? "other roof tags speak of a slope; drawn, " + measure_name()
+                       : as_usual ? "other roof tags speak of a slope, neighbours of this one"
+                                  : "other roof tags speak of a slope"});
   }
   if (outline && outline->roof_shape && !has_own_height())
     choices.push_back({*outline->roof_shape, Source::implied, kOutlineConfidence, "the outline's roof"});
@@ -94,9 +98,10 @@ Sourced<RoofShape> Resolver::roof_shape() {
         {RoofShape::flat, Source::geometry, kImpliedConfidence, "neighbours stand at all sides: no side for eaves"});
   if (const auto& seen = building.seen_roof.pitched; seen.confidence > 0 && is_whole()) {
     const bool as_usual = agreed && vote->value != RoofShape::flat && vote->value != RoofShape::other;
-    const RoofShape sloped = as_usual                              ? vote->value
-                             : usual.roof_shape != RoofShape::flat ? usual.roof_shape
-                                                                   : RoofShape::gabled;
+    const RoofShape sloped = usual.drawn_roof && *usual.drawn_roof != RoofShape::flat ? *usual.drawn_roof
+                             : as_usual                                               ? vote->value
+                             : usual.roof_shape != RoofShape::flat                    ? usual.roof_shape
+                                                                                      : RoofShape::gabled;
     choices.push_back(
         {seen.value ? sloped : RoofShape::flat, seen.source, static_cast<double>(seen.confidence), seen.why});
   }
@@ -248,7 +253,7 @@ void Resolver::fit_roof_height(Attributes& a, bool storeys_known, double plinth,
     } else {
       roof = std::min(wanted, 0.6 * whole);
       if (storeys_known && a.storeys.value > 0) {
-        const double left = a.height.value - plinth - a.storeys.value * usual.storey_height;
+        const double left = a.height.value - plinth - a.storeys.value * storey_height_of(a.storeys.value);
         roof = std::clamp(left, wanted * 2 / 3, wanted * 4 / 3);
         roof = std::min(roof, std::max(a.height.value - plinth - a.storeys.value * kLowestStorey, 0.1 * whole));
       }

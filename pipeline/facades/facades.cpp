@@ -131,6 +131,7 @@ class FacadeBuilder {
     const RoofOrders orders = read_roof_orders(values.attributes, complaints);
     for (const std::string& complaint : complaints) tell(complaint);
     mass.gable = orders.gable;
+    mass.edge_orders = orders.edges;
     const std::vector<model::RoofEdge> edges = edges_of_plan(building, part, mass.plan);
     std::vector<WindowAxes> axes = window_axes(walls, part);
     furnished_ = furnish_roof(building, part, mass, edges, axes, orders);

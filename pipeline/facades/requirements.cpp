@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
-#include "pipeline/base/portable_math.h"
 #include "pipeline/facades/bodies_on_roofs.h"
 #include "pipeline/facades/facade_segments.h"
 #include "pipeline/facades/wall_frame.h"
@@ -28,6 +31,9 @@ constexpr double kSlack = 0.012;
 /// The same of a ratio of two such lengths around a metre.
 constexpr double kRatioSlack = 0.02;
 
+/// m. Sills of one row lie within that.
+constexpr double kSameRow = 0.3;
+
 /// An opening on its wall; metres.
 struct Seen {
   OpeningKind kind = OpeningKind::window;
@@ -38,7 +44,7 @@ struct Seen {
   double ratio() const { return height() / std::max(width(), 0.01); }
 };
 
-/// Of one house: the worst of each kind is told, once.
+/// Of one house: of each kind of miss the worst, once.
 class Check {
  public:
   Check(model::Region& region, const Building& building, const districts::Preset& preset)
@@ -49,7 +55,8 @@ class Check {
     ground_ = building_.attributes.ground_height.value + part.attributes.plinth_height.value;
     if (const double upper = part.attributes.storeys.value - 1;
         !asked_.upper_storeys.empty() && (upper < asked_.upper_storeys[0] || upper > asked_.upper_storeys[1]))
-      miss(fmt::format("{:g} storeys above the ground floor, {:g} to {:g} asked", upper, asked_.upper_storeys[0],
+      miss("storeys", 0,
+           fmt::format("{:g} storeys above the ground floor, {:g} to {:g} asked", upper, asked_.upper_storeys[0],
                        asked_.upper_storeys[1]));
     std::vector<WallFrame> walls;
     for (std::uint32_t f = 0; f < part.lod2.faces.size(); ++f)
@@ -57,8 +64,7 @@ class Check {
     std::vector<double> upper_areas, gable_areas;
     for (const FacadeSegment& s : facade_segments(building_, walls)) {
       if (s.kind != model::WallSegmentKind::street) continue;
-      const WallFrame& wall = walls[s.wall];
-      std::vector<Seen> all = openings(part, wall, s);
+      const std::vector<Seen> all = openings(part, walls[s.wall], s);
       ratios(all);
       if (asked_.windows_in_line) lines(all, s);
       for (const Seen& o : all)
@@ -68,21 +74,27 @@ class Check {
     if (asked_.gable_windows_smaller && !upper_areas.empty() && !gable_areas.empty()) {
       const double least = *std::ranges::min_element(upper_areas), most = *std::ranges::max_element(gable_areas);
       if (most > least - kSlack)
-        miss(fmt::format("a window above the eaves of {:.2f} m2, smaller asked than {:.2f} m2 below", most, least));
+        miss("areas", most - least,
+             fmt::format("a window above the eaves of {:.2f} m2, smaller asked than {:.2f} m2 below", most, least));
     }
     gables(part, mass);
     if (mass) roof_elements(part, *mass);
+    for (const auto& [kind, worst] : misses_)
+      region_.report.add(building_.osm, model::IssueCode::requirement_missed,
+                         fmt::format("{} (preset {})", worst.second, preset_.name));
   }
 
  private:
   bool above_eaves(const Seen& o) const { return o.bottom > eaves_ - kSlack; }
   bool is_upper(const Seen& o) const { return o.storey > 0 && !above_eaves(o); }
 
-  void miss(std::string what) {
-    region_.report.add(building_.osm, model::IssueCode::requirement_missed,
-                       fmt::format("{} (preset {})", std::move(what), preset_.name));
+  /// \param by  how far it is from what is asked, in units of its kind
+  void miss(std::string_view kind, double by, std::string what) {
+    const auto [place, added] = misses_.try_emplace(kind, by, std::move(what));
+    if (!added && by > place->second.first) place->second = {by, std::move(what)};
   }
 
+  /// From left to right.
   std::vector<Seen> openings(const BuildingPart& part, const WallFrame& wall, const FacadeSegment& s) const {
     std::vector<Seen> out;
     const model::Solid& solid = part.lod3.solid;
@@ -99,132 +111,160 @@ class Check {
       const double middle = (seen.left + seen.right) / 2;
       if (middle >= s.from && middle <= s.to) out.push_back(seen);
     }
-    std::ranges::sort(out, {}, [](const Seen& o) { return std::pair(o.storey, o.left); });
+    std::ranges::sort(out, {}, [](const Seen& o) { return std::pair(o.left, o.bottom); });
     return out;
   }
 
   void ratios(const std::vector<Seen>& all) {
-    struct Worst {
-      const char* what;
-      const std::optional<double>& asked;
-      double found = 1e9;
+    const auto at_least = [&](const std::optional<double>& asked, double found, double slack, std::string_view kind,
+                              const char* what) {
+      if (asked && found < *asked - slack) miss(kind, *asked - found, fmt::format(fmt::runtime(what), found, *asked));
     };
-    Worst upper{"an upper window is {:.2f} times as high as wide, at least {:.2f} asked", asked_.window_ratio},
-        ground{"a window of the ground floor is {:.2f} times as high as wide, at least {:.2f} asked",
-               asked_.ground_window_ratio},
-        gable{"a window above the eaves is {:.2f} times as high as wide, at least {:.2f} asked",
-              asked_.gable_window_ratio},
-        from{"upper windows begin {:.2f} m above the ground floor, at least {:.2f} m asked", asked_.upper_windows_from},
-        door{"a door is {:.2f} m high, at least {:.2f} m asked", asked_.door_height};
     for (const Seen& o : all) {
       if (o.kind == OpeningKind::door) {
-        door.found = std::min(door.found, o.height());
+        at_least(asked_.door_height, o.height(), kSlack, "door", "a door is {:.2f} m high, at least {:.2f} m asked");
         continue;
       }
-      Worst& w = above_eaves(o) ? gable : o.storey > 0 ? upper : ground;
-      w.found = std::min(w.found, o.ratio());
-      if (is_upper(o)) from.found = std::min(from.found, o.bottom - ground_);
-    }
-    for (const Worst& w : {upper, ground, gable, from, door}) {
-      const double slack =
-          &w.asked == &asked_.upper_windows_from || &w.asked == &asked_.door_height ? kSlack : kRatioSlack;
-      if (w.asked && w.found < 1e9 && w.found < *w.asked - slack)
-        miss(fmt::format(fmt::runtime(w.what), w.found, *w.asked));
+      if (above_eaves(o))
+        at_least(asked_.gable_window_ratio, o.ratio(), kRatioSlack, "gable ratio",
+                 "a window above the eaves is {:.2f} times as high as wide, at least {:.2f} asked");
+      else if (o.storey > 0)
+        at_least(asked_.window_ratio, o.ratio(), kRatioSlack, "ratio",
+                 "an upper window is {:.2f} times as high as wide, at least {:.2f} asked");
+      else
+        at_least(asked_.ground_window_ratio, o.ratio(), kRatioSlack, "ground ratio",
+                 "a window of the ground floor is {:.2f} times as high as wide, at least {:.2f} asked");
+      if (is_upper(o))
+        at_least(asked_.upper_windows_from, o.bottom - ground_, kSlack, "from",
+                 "upper windows begin {:.2f} m above the ground floor, at least {:.2f} m asked");
     }
   }
 
-  /// The upper storeys of a front: windows equal and as far from each other, the same places in every storey, and farther from
-  /// the front's edges than from each other.
+  /// The upper rows of a front: windows equal and as far from each other, the same places in every row, and farther from the
+  /// front's edges than from each other. Rows are told by the height of their sills.
   void lines(const std::vector<Seen>& all, const FacadeSegment& s) {
     std::vector<std::vector<Seen>> rows;
     for (const Seen& o : all) {
       if (o.kind != OpeningKind::window || !is_upper(o)) continue;
-      if (rows.empty() || rows.back().back().storey != o.storey) rows.emplace_back();
-      rows.back().push_back(o);
+      const auto row = std::ranges::find_if(
+          rows, [&](const std::vector<Seen>& r) { return std::fabs(r[0].bottom - o.bottom) < kSameRow; });
+      if (row == rows.end())
+        rows.push_back({o});
+      else
+        row->push_back(o);
     }
     if (rows.empty()) return;
+    std::ranges::sort(rows, {}, [](const std::vector<Seen>& row) { return row[0].bottom; });
     const std::vector<Seen>& first = rows.front();
     const double width = first[0].width(), height = first[0].height();
     const double gap = first.size() > 1 ? first[1].left - first[0].right : -1;
     for (const std::vector<Seen>& row : rows) {
-      if (row.size() != first.size())
-        return miss(fmt::format("storey {} has {} windows, storey {} {}: not in line", row[0].storey, row.size(),
-                                first[0].storey, first.size()));
+      if (row.size() != first.size()) {
+        miss("line", 100,
+             fmt::format("rows of {} and {} upper windows above each other: not in line", first.size(), row.size()));
+        continue;
+      }
       for (std::size_t i = 0; i < row.size(); ++i) {
-        if (std::fabs(row[i].width() - width) > kSlack || std::fabs(row[i].height() - height) > kSlack)
-          return miss(fmt::format("upper windows of {:.2f} x {:.2f} m and {:.2f} x {:.2f} m: equal ones asked", width,
-                                  height, row[i].width(), row[i].height()));
-        if (std::fabs(row[i].left - first[i].left) > kSlack)
-          return miss(fmt::format("a window of storey {} stands {:.2f} m beside that below it", row[i].storey,
-                                  std::fabs(row[i].left - first[i].left)));
-        if (i > 0 && std::fabs(row[i].left - row[i - 1].right - gap) > 2 * kSlack)
-          return miss(fmt::format("gaps of {:.2f} and {:.2f} m between windows: equal ones asked", gap,
-                                  row[i].left - row[i - 1].right));
+        if (const double by = std::max(std::fabs(row[i].width() - width), std::fabs(row[i].height() - height));
+            by > kSlack)
+          miss("equal", by,
+               fmt::format("upper windows of {:.2f} x {:.2f} m and {:.2f} x {:.2f} m: equal ones asked", width, height,
+                           row[i].width(), row[i].height()));
+        if (const double by = std::fabs(row[i].left - first[i].left); by > kSlack)
+          miss("line", by, fmt::format("an upper window stands {:.2f} m beside that below it", by));
+        if (i == 0) continue;
+        if (const double by = std::fabs(row[i].left - row[i - 1].right - gap); by > 2 * kSlack)
+          miss("gap", by,
+               fmt::format("gaps of {:.2f} and {:.2f} m between windows: equal ones asked", gap,
+                           row[i].left - row[i - 1].right));
       }
     }
     const double edge = std::min(first.front().left - s.from, s.to - first.back().right);
     if (gap > 0 && edge <= gap - kSlack)
-      miss(fmt::format(
-          "windows stand {:.2f} m from the front's edge and {:.2f} m from each other: farther from the edge asked",
-          edge, gap));
+      miss("edge", gap - edge,
+           fmt::format(
+               "windows stand {:.2f} m from the front's edge and {:.2f} m from each other: farther from the edge asked",
+               edge, gap));
   }
 
   void gables(const BuildingPart& part, const masses::BuiltMass* mass) {
     if (!asked_.roof_shapes.empty() &&
         std::ranges::find(asked_.roof_shapes, part.built_roof) == asked_.roof_shapes.end())
-      miss(fmt::format("the roof is {}", model::name(part.built_roof)));
-    double top = -1e9;
-    for (const model::RoofInstallation& r : part.lod3.roof_installations)
-      if (r.kind == RoofElementKind::gable)
-        for (const Point3& p : r.solid.vertices) top = std::max(top, p.z);
-    const bool stands = top > -1e9;
+      miss("roof", 0, fmt::format("the roof is {}", model::name(part.built_roof)));
+    bool stands = false;
+    for (const model::RoofInstallation& r : part.lod3.roof_installations) {
+      if (r.kind != RoofElementKind::gable) continue;
+      stands = true;
+      if (!asked_.gable_overtop || !mass) continue;
+      const double above = top_of(r) - top_behind(r, mass->roof);
+      if (above < *asked_.gable_overtop - kSlack)
+        miss("overtop", *asked_.gable_overtop - above,
+             fmt::format("a gable ends {:.2f} m above the roof behind it, at least {:.2f} m asked", above,
+                         *asked_.gable_overtop));
+    }
     if (asked_.ornamental_gable && *asked_.ornamental_gable != stands)
-      return miss(stands ? "an ornamental gable stands, none asked" : "no ornamental gable stands");
-    if (!asked_.gable_overtop || !stands || !mass) return;
-    double ridge = -1e9;
-    for (const roofs::Roof::Surface& surface : mass->roof.surfaces)
+      miss("gable", 0, stands ? "an ornamental gable stands, none asked" : "no ornamental gable stands");
+  }
+
+  static double top_of(const model::RoofInstallation& gable) {
+    double top = -1e300;
+    for (const Point3& p : gable.solid.vertices) top = std::max(top, p.z);
+    return top;
+  }
+
+  /// Highest corner of the roof straight behind a gable, as deep as the gable is wide; -1e300 for none.
+  static double top_behind(const model::RoofInstallation& gable, const roofs::Roof& roof) {
+    Point2 a{}, b{};
+    double width = 0;
+    for (const Point3& p : gable.solid.vertices)
+      for (const Point3& q : gable.solid.vertices)
+        if (const double d = std::hypot(q.x - p.x, q.y - p.y); d > width) a = p.xy(), b = q.xy(), width = d;
+    double top = -1e300;
+    if (width <= 0) return top;
+    for (const roofs::Roof::Surface& surface : roof.surfaces)
       for (const auto& loop : surface.loops)
-        for (const Point3& p : loop) ridge = std::max(ridge, p.z);
-    if (top - ridge < *asked_.gable_overtop - kSlack)
-      miss(fmt::format("the gable ends {:.2f} m above the ridge, at least {:.2f} m asked", top - ridge,
-                       *asked_.gable_overtop));
+        for (const Point3& p : loop) {
+          const double u = ((p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y)) / width,
+                       v = ((p.x - a.x) * (b.y - a.y) - (p.y - a.y) * (b.x - a.x)) / width;
+          if (u > -kSlack && u < width + kSlack && std::fabs(v) <= width) top = std::max(top, p.z);
+        }
+    return top;
   }
 
   void roof_elements(const BuildingPart& part, const masses::BuiltMass& mass) {
     const std::vector<model::RoofFront>& fronts = part.lod3.roof_fronts;
     const auto& ring = mass.plan.outer.points;
-    const double slope = base::sin_cos(part.attributes.roof_pitch.value * base::kRadiansPerDegree).sin;
+    const auto too_near = [&](const std::optional<double>& asked, double found, std::string_view kind,
+                              const model::RoofFront& f, const std::string& from) {
+      if (asked && found < *asked - 2 * kSlack)
+        miss(kind, *asked - found,
+             fmt::format("a {} stands {:.2f} m from {}, at least {:.2f} m asked", model::name(f.kind), found, from,
+                         *asked));
+    };
     for (std::size_t i = 0; i < fronts.size(); ++i) {
       const model::RoofFront& f = fronts[i];
-      const std::string what(model::name(f.kind));
       if (asked_.roof_element_width && f.width > *asked_.roof_element_width + kSlack)
-        return miss(
-            fmt::format("a {} is {:.2f} m wide, at most {:.2f} m asked", what, f.width, *asked_.roof_element_width));
+        miss("width", f.width,
+             fmt::format("a {} is {:.2f} m wide, at most {:.2f} m asked", model::name(f.kind), f.width,
+                         *asked_.roof_element_width));
       if (f.edge < 0 || static_cast<std::size_t>(f.edge) >= ring.size()) continue;  // over a yard
-      const Point2 a = ring[static_cast<std::size_t>(f.edge)],
-                   b = ring[(static_cast<std::size_t>(f.edge) + 1) % ring.size()];
+      const auto edge = static_cast<std::size_t>(f.edge);
+      const Point2 a = ring[edge], b = ring[(edge + 1) % ring.size()];
       const double length = std::max(std::hypot(b.x - a.x, b.y - a.y), 0.01);
       const auto along = [&](Point2 p) { return ((p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y)) / length; };
       const double at = along(f.middle);
-      const double side = std::min(at, length - at) - f.width / 2;
-      if (asked_.roof_side_distance && side < *asked_.roof_side_distance - kSlack)
-        return miss(fmt::format("a {} stands {:.2f} m from the side, at least {:.2f} m asked", what, side,
-                                *asked_.roof_side_distance));
-      if (asked_.roof_eaves_distance && f.kind == RoofElementKind::dormer && model::traits(part.built_roof).one_pitch &&
-          slope > 0.1) {
-        const double up = (f.foot - eaves_) / slope;
-        if (up < *asked_.roof_eaves_distance - 2 * kSlack)
-          return miss(fmt::format("a dormer stands {:.2f} m above the eaves, at least {:.2f} m asked", up,
-                                  *asked_.roof_eaves_distance));
+      too_near(asked_.roof_side_distance, std::min(at, length - at) - f.width / 2, "side", f, "the side");
+      if (f.kind == RoofElementKind::dormer && edge < mass.roof.wall_tops.size()) {
+        double eaves = 1e300;
+        for (const Point3& p : mass.roof.wall_tops[edge]) eaves = std::min(eaves, p.z);
+        const double in = ((f.middle.x - a.x) * (b.y - a.y) - (f.middle.y - a.y) * (b.x - a.x)) / length;
+        too_near(asked_.roof_eaves_distance, std::hypot(in, f.foot - eaves), "eaves", f, "the eaves");
       }
-      if (!asked_.roof_element_distance) continue;
-      for (std::size_t j = 0; j < i; ++j) {
-        if (fronts[j].edge != f.edge) continue;
-        const double gap = std::fabs(along(fronts[j].middle) - at) - (f.width + fronts[j].width) / 2;
-        if (gap < *asked_.roof_element_distance - kSlack)
-          return miss(fmt::format("a {} stands {:.2f} m from a {}, at least {:.2f} m asked", what, gap,
-                                  model::name(fronts[j].kind), *asked_.roof_element_distance));
-      }
+      for (std::size_t j = 0; j < i; ++j)
+        if (fronts[j].edge == f.edge)
+          too_near(asked_.roof_element_distance,
+                   std::fabs(along(fronts[j].middle) - at) - (f.width + fronts[j].width) / 2, "between", f,
+                   fmt::format("a {}", model::name(fronts[j].kind)));
     }
   }
 
@@ -232,7 +272,8 @@ class Check {
   const Building& building_;
   const districts::Preset& preset_;
   const PresetRequirements& asked_;
-  double eaves_ = 0, ground_ = 0;  ///< m above the height reference
+  double eaves_ = 0, ground_ = 0;                                      ///< m above the height reference
+  std::map<std::string_view, std::pair<double, std::string>> misses_;  ///< by kind: by how much, in words
 };
 
 }  // namespace

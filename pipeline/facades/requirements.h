@@ -10,8 +10,9 @@
 namespace blockrand::facades {
 
 /// Measures every house whose preset states requirements (districts::PresetRequirements) and reports each that is missed as
-/// REQUIREMENT_MISSED: what, by how much, which preset. Windows are those of the main body's fronts on streets; what has no
-/// windows, gable or dormer misses nothing but the gable that it should have. Houses that stay below LoD3 are left out.
+/// REQUIREMENT_MISSED: what, by how much, which preset; of each kind the worst, once. Windows are those of the main body's
+/// fronts on streets; what has no windows, gable or dormer misses nothing but the gable that it should have. Distances from the
+/// eaves are taken straight, which on a slope is along it. Houses that stay below LoD3 are left out.
 /// \param built  of the tile, with the roofs that LoD3 has
 void check_requirements(model::Region& region, const masses::BuiltMasses& built,
                         std::span<const districts::Preset> presets);

@@ -12,6 +12,7 @@
 #include "pipeline/attributes/roof_edges.h"
 #include "pipeline/facades/bodies_on_roofs.h"
 #include "pipeline/facades/buildings_in_stretches.h"
+#include "pipeline/facades/roof_elements.h"
 #include "pipeline/geometry/plan_shape.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/triangulate.h"
@@ -45,6 +46,8 @@ constexpr double kParapet = 0.40;
 constexpr double kLowerNeighbour = 2.0;
 /// m. An eaves' body at its highest comes down the wall so far (OverhangOptions::thickness, most_drop).
 constexpr double kEavesDepth = 0.25;
+/// m that a wall rises between its ends: less is no gable.
+constexpr double kLeastGable = 0.5;
 /// m². What two gables have in common by rounding.
 constexpr double kLeastCommon = 1e-3;
 /// m between places at which the room before a wall is felt for, along it and away from it.
@@ -93,7 +96,7 @@ class RoofDresser {
   }
 
  private:
-  static constexpr double kFarthest = kEaves * 3.5;  ///< m: mitres of sharp corners end within this
+  static constexpr double kFarthest = kMostOverhang * 3.5;  ///< m: mitres of sharp corners end within this
 
   std::vector<model::Polygon> others_near(const model::Building& building) const {
     geometry::PlanBox box;
@@ -262,17 +265,20 @@ class RoofDresser {
       any_level = any_level || is;
       if (!is) level[s.edge] = false;
     }
-    if (any_level && !small && has_parapet(building.attributes)) {
+    const std::optional<double>& parapet = standing.edge_orders.parapet;
+    if (any_level && (parapet ? *parapet > 0 : !small && has_parapet(building.attributes))) {
       for (std::size_t i = 0; i < edges.size(); ++i) bare[i] = has_gable[i] || kinds[i] == model::RoofEdge::party_wall;
       roofs::ParapetOptions options;
-      options.height = kParapet;
+      options.height = parapet.value_or(kParapet);
       take(roofs::parapets(plan, roof, kinds, bare, taken, options), RoofElementKind::parapet);
     }
 
     roofs::OverhangOptions over;
-    over.eaves = (old ? kOldEaves : kEaves) * (small ? 0.5 : 1);
-    over.verge = over.eaves * kVergeShare;
-    const std::vector<double> free = rooms_before(edges, kinds, others, over.eaves);
+    const masses::RoofEdgeOrders& asked = standing.edge_orders;
+    const double usual_eaves = (old ? kOldEaves : kEaves) * (small ? 0.5 : 1);
+    over.eaves = asked.eaves.value_or(usual_eaves);
+    over.verge = asked.verge.value_or(usual_eaves * kVergeShare);
+    const std::vector<double> free = rooms_before(edges, kinds, others, std::max(over.eaves, over.verge));
     std::vector<roofs::OverhangRoom> rooms(edges.size());
     for (std::size_t i = 0; i < edges.size(); ++i) {
       double top = 1e300;
@@ -281,7 +287,7 @@ class RoofDresser {
     }
     roofs::BuiltOverhangs beyond = roofs::overhangs(plan, roof, rooms, over);
     take(std::move(beyond.elements), RoofElementKind::eaves);
-    if (has_caps(looks)) {
+    if (asked.caps && has_caps(looks)) {
       roofs::CapOptions caps;
       caps.profile =
           roofs::CapProfile::triangular;  // a third of the faces of a half-round one, and the same from the street
@@ -311,6 +317,28 @@ class RoofDresser {
   }
 
   /// Ornamental gables before all that looks on a street. Chimneys that stand where one comes give way.
+  static bool rises(const std::vector<Point3>& top) {
+    double low = 1e300, high = -1e300;
+    for (const Point3& p : top) low = std::min(low, p.z), high = std::max(high, p.z);
+    return high - low > kLeastGable;
+  }
+
+  /// What is asked for; of stepped and curved gables then the same with other numbers of steps and curves: a broken roof takes
+  /// few of them.
+  static std::vector<roofs::GableOptions> forms_like(const roofs::GableOptions& asked) {
+    std::vector<roofs::GableOptions> out{asked};
+    if (asked.form == roofs::GableForm::attic) return out;
+    for (const roofs::GableForm form :
+         {asked.form, asked.form == roofs::GableForm::stepped ? roofs::GableForm::curved : roofs::GableForm::stepped})
+      for (const int count : form == roofs::GableForm::stepped ? std::vector{5, 4, 3} : std::vector{2, 1}) {
+        roofs::GableOptions other = asked;
+        other.form = form;
+        (form == roofs::GableForm::stepped ? other.steps : other.curves) = count;
+        out.push_back(other);
+      }
+    return out;
+  }
+
   void put_gables(BuildingPart& body, const masses::BuiltMass& standing, const std::vector<model::RoofEdge>& kinds,
                   std::vector<bool>& has_gable, std::vector<std::vector<Point2>>& taken,
                   std::vector<model::RoofInstallation>& bodies) {
@@ -318,10 +346,15 @@ class RoofDresser {
     for (std::uint32_t i = 0; i < kinds.size(); ++i) {
       if (kinds[i] != model::RoofEdge::street) continue;
       if (!roofs::may_stand_before(standing.gable->form, body.built_roof)) continue;
-      roofs::BuiltGable made = roofs::ornamental_gable(standing.plan, standing.roof, i, *standing.gable);
+      // Where nothing rises behind, no gable looks on the street.
+      if (standing.gable->form != roofs::GableForm::attic && !rises(standing.roof.wall_tops[i])) continue;
+      roofs::BuiltGable made;
+      for (const roofs::GableOptions& form : forms_like(*standing.gable)) {
+        made = roofs::ornamental_gable(standing.plan, standing.roof, i, form);
+        if (made.body || made.refusal != roofs::GableRefusal::form) break;
+      }
       if (!made.body) {
-        // Where nothing rises behind, no gable looks on the street.
-        if (made.refusal != roofs::GableRefusal::form) ++left_out_[RoofElementKind::gable];
+        ++left_out_[RoofElementKind::gable];
         continue;
       }
       // At a corner of two streets one gable has the corner.

@@ -120,6 +120,10 @@ class Furnisher {
 
  private:
   bool on_side(std::int32_t edge, RoofSide side) const {
+    // What stands close above a party wall would look at the neighbour's wall, or into his roof.
+    if (edge >= 0 && static_cast<std::size_t>(edge) < edges_.size() &&
+        edges_[static_cast<std::size_t>(edge)] == model::RoofEdge::party_wall)
+      return false;
     if (side == RoofSide::both) return true;
     const bool street = edge >= 0 && static_cast<std::size_t>(edge) < edges_.size() &&
                         edges_[static_cast<std::size_t>(edge)] == model::RoofEdge::street;
@@ -363,6 +367,17 @@ RoofOrders read_roof_orders(std::span<const std::pair<std::string, grammar::Valu
     p.pediment = said.number("gable_pediment", 0, 1, p.pediment);
     out.gable = p;
   }
+  // Below 0: nothing is said.
+  const auto stated = [&](std::string_view name, double most) -> std::optional<double> {
+    const double value = said.number(name, -1, most, -1);
+    if (value < 0 && value != -1)
+      complaints.push_back(fmt::format("{} = {} is neither -1 nor 0 or more; -1 is taken", name, value));
+    return value < 0 ? std::nullopt : std::optional(value);
+  };
+  out.edges.eaves = stated("eaves_overhang", kMostOverhang);
+  out.edges.verge = stated("verge_overhang", kMostOverhang);
+  out.edges.parapet = stated("parapet_height", 1.5);
+  out.edges.caps = said.number("ridge_caps", 0, 1, 1) > 0.5;
   out.distances.eaves = said.number("roof_eaves_distance", 0.1, 10, out.distances.eaves);
   out.distances.between = said.number("roof_element_distance", 0.1, 10, out.distances.between);
   out.distances.side = said.number("roof_side_distance", 0.1, 10, out.distances.side);

@@ -18,6 +18,9 @@
 
 namespace blockrand::facades {
 
+/// m. Farther out no eaves or verge can be ordered: what stands before a house is looked for within it.
+inline constexpr double kMostOverhang = 0.6;
+
 /// Where elements stand: on slopes that begin above street fronts, on all others, or on both.
 enum class RoofSide : std::uint8_t { street, rear, both };
 
@@ -33,6 +36,7 @@ struct RoofOrders {
   int cross_gable_count = 1;                 ///< on a slope; 0: as many as fit
   std::optional<roofs::GableOptions> gable;  ///< before gables and attics that look on a street
   roofs::ElementDistances distances;
+  masses::RoofEdgeOrders edges;
   bool any() const { return dormers || cross_gables; }
 };
 

@@ -12,6 +12,13 @@
 
 namespace blockrand::masses {
 
+/// What rules for roofs say of a roof's edges, m; what is empty follows age and size (facades::add_roof_edges).
+struct RoofEdgeOrders {
+  std::optional<double> eaves, verge;  ///< out from the wall; 0: none
+  std::optional<double> parapet;       ///< high; 0: none
+  bool caps = true;                    ///< along ridges and hips, where the material has some
+};
+
 /// The plan that a body's LoD2 solid stands on and the roof that closes it, in the solid's own points: what later stages
 /// put on the roof stands on the very faces that are written.
 struct BuiltMass {
@@ -19,6 +26,7 @@ struct BuiltMass {
   double bottom = 0;    ///< m above the build's height reference: z of the underside
   roofs::Roof roof;
   std::optional<roofs::GableOptions> gable;  ///< rules for roofs want it before what looks on a street; LoD3
+  RoofEdgeOrders edge_orders;
 };
 
 /// Plan and roof as geometry::SolidBuilder makes faces of them: points rounded to the 1/1024 m grid, repetitions within

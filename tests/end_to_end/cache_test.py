@@ -171,6 +171,16 @@ class Cache(BuildTest):
         self.assertEqual(tiles(self.build(SAMPLE, 'a', *run)), (0, 3), f'no house uses {unused}')
         self.touch_rules(configs, some)
         self.assertGreater(tiles(self.build(SAMPLE, 'a', *run))[0], 0, f'houses use {some}')
+        # What a preset states and promises counts where houses wear it.
+        known = set().union(*names.values())
+        for preset, worn in ((sorted(known - used)[0], False), (sorted(known & used)[0], True)):
+            for table in ('measures]\nroof_pitch = 57\nstorey_height = 3.3\n', 'requirements]\nwindow_ratio = 9\n'):
+                with open(book, 'a', encoding='utf-8') as f:
+                    f.write(f'\n[{preset}.{table}')
+                built = tiles(self.build(SAMPLE, 'a', *run))[0]
+                self.assertEqual(built > 0, worn, preset + table)
+        clean = self.build(SAMPLE, 'clean', '--configs', configs, '--lod', '3', *OPTIONS)
+        self.assertEqual(hashes(clean), hashes(self.path('a')))
 
     def presets_of(self, folder):
         import gzip

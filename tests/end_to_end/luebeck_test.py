@@ -172,6 +172,8 @@ class Luebeck(BuildTest):
         for gap in gaps:
             self.assertAlmostEqual(gap, gaps[0], delta=2 * SLACK, msg=where)
             self.assertGreater(min(first[0].left, length - first[-1].right), gap - SLACK, where)
+        above = {round(o.bottom, 1) for o in openings if o.kind == 'Window' and o.bottom > house.eaves() - SLACK}
+        self.assertLessEqual(len(above), 2, where)  # H27
         area = (first[0].right - first[0].left) * (first[0].top - first[0].bottom)
         for o in openings:
             if o.kind == 'Window' and o.bottom > house.eaves() - SLACK:

@@ -60,6 +60,18 @@ class RoofElements(BuildTest):
         told = [blockrand('explain', out, id_).out for id_ in ids[:60]]
         self.assertTrue(any('cross gable' in text for text in told))
 
+    def test_edges_are_ordered(self):
+        bare = 'dormer_share = 0, cross_gable_share = 0, '
+        usual = self.gml(self.with_parameters('usual', bare + 'gable = "none"'))
+        none = self.gml(self.with_parameters('none', bare + 'eaves_overhang = 0, verge_overhang = 0, parapet_height = 0, ridge_caps = 0'))
+        for kind in ('eaves', 'ridge_cap'):  # bodies beside the main one keep theirs
+            self.assertGreater(usual.count(f'>{kind}<'), 20, kind)
+            self.assertLess(none.count(f'>{kind}<'), usual.count(f'>{kind}<') / 2, kind)
+        wide = self.with_parameters('wide', bare + 'eaves_overhang = 0.1, verge_overhang = 0.6, parapet_height = 1.1')
+        self.assertGreaterEqual(self.gml(wide).count('>verge<'), usual.count('>verge<'))
+        checked = blockrand('validate', wide)  # no body in another
+        self.assertEqual(checked.code, 0, checked)
+
     def test_what_is_wrong_is_told(self):
         out = self.with_parameters('wrong', 'dormer_share = 1, dormer_kind = "pagoda", cross_gable_share = 0')
         self.assertEqual(self.counts(out)['dormers'], 0)

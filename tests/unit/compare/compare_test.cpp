@@ -627,6 +627,29 @@ TEST(Compare, RoofFormsAreToldFromPlanes) {
   EXPECT_EQ(c.roof_confusion[static_cast<std::size_t>(RoofForm::gabled)][static_cast<std::size_t>(RoofForm::flat)], 1u);
 }
 
+TEST(Compare, RidgesOfGabledRoofsAgreeOrStandSquare) {
+  const auto roof = [](bool along) {
+    Building b = building_of({});
+    b.faces.erase(b.faces.begin() + 1);
+    Face slope = building_of({}).faces[1];
+    if (along) {
+      slope.rings = {{{-5, -4, 6}, {5, -4, 6}, {5, 0, 9}, {-5, 0, 9}}};
+      b.faces.push_back(slope);
+      slope.rings = {{{5, 4, 6}, {-5, 4, 6}, {-5, 0, 9}, {5, 0, 9}}};
+    } else {
+      slope.rings = {{{-5, 4, 6}, {-5, -4, 6}, {0, -4, 9}, {0, 4, 9}}};
+      b.faces.push_back(slope);
+      slope.rings = {{{5, -4, 6}, {5, 4, 6}, {0, 4, 9}, {0, -4, 9}}};
+    }
+    b.faces.push_back(slope);
+    return b;
+  };
+  EXPECT_EQ(counted(compared(roof(true), roof(true)), Measure::ridge_agrees), 1);
+  EXPECT_EQ(counted(compared(roof(true), roof(false)), Measure::ridge_agrees), 0);
+  const Comparison c = compared(roof(true), building_of({}));
+  EXPECT_FALSE(c.matches[0].values[static_cast<std::size_t>(Measure::ridge_agrees)].counted) << "one has no ridge";
+}
+
 // ---- polygons as strangers draw them
 
 double area_of(const std::vector<Triangle3>& triangles) {

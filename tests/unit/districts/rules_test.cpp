@@ -116,6 +116,19 @@ preset = "b"
   EXPECT_EQ(preset_of(with("-1"), house()), "a");
 }
 
+TEST(Which, FrontIsTheWidthOfTheStreetFront) {
+  const RuleSets book = book_of(
+      "[[rule]]\nname = \"wide\"\nwhich.front = [10.5, 60]\npreset = \"a\"\n[[rule]]\nname = \"all\"\nlevel = "
+      "\"city\"\npreset = \"b\"\n");
+  Subject s = house();
+  EXPECT_EQ(preset_of(book, s), "b") << "no front is known";
+  s.front = 8;
+  EXPECT_EQ(preset_of(book, s), "b");
+  s.front = 12;
+  EXPECT_EQ(preset_of(book, s), "a");
+  EXPECT_THAT(assign(book, 0, s, 1).why, HasSubstr("a front of 12.0 m"));
+}
+
 TEST(Draw, FollowsTheWeightsAndTheBuildingAlone) {
   const RuleSets book = book_of("[[rule]]\nname = \"r\"\npreset = { a = 0.7, b = 0.3 }\n");
   int a = 0;

@@ -210,7 +210,8 @@ TEST(Conformance, Row24SlopeSelectors) {
 TEST(Conformance, FacesOfDormersAndCrossGablesByName) {
   // A dormer's body: a box with a gable roof. Every face can be told and goes on by itself (Holtmeier 3.3: component split).
   const auto d = derive_text(
-      "Lot --> extrude(1.5) comp(f){ front : Front | left : Cheek. | right : Cheek. | top : Roof | bottom : NIL | back : Back. }\n"
+      "Lot --> extrude(1.5) comp(f){ front : Front | left : Cheek. | right : Cheek. | top : Roof | bottom : NIL | back "
+      ": Back. }\n"
       "Roof --> roofGable(45) comp(f){ bottom : NIL | aslant : Slope. | vertical : Gable. }\n"
       "Front --> split(x){ ~1 : Wall. | 0.9 : Window. | ~1 : Wall. }",
       rectangle(1.4, 2));
