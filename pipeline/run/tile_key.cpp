@@ -67,9 +67,10 @@ void pack_requirements(const districts::Preset& preset, Packer& out) {
   out << preset.requirements.has_value();
   if (!preset.requirements) return;
   const districts::PresetRequirements& r = *preset.requirements;
-  out << r.upper_storeys << r.upper_windows_from << r.door_height << r.window_ratio << r.ground_window_ratio << r.gable_window_ratio
-      << r.windows_in_line << r.gable_windows_smaller << r.ornamental_gable << r.gable_overtop << r.roof_shapes
-      << r.roof_element_width << r.roof_element_distance << r.roof_eaves_distance << r.roof_side_distance;
+  out << r.upper_storeys << r.upper_windows_from << r.door_height << r.window_ratio << r.ground_window_ratio
+      << r.gable_window_ratio << r.windows_in_line << r.gable_windows_smaller << r.ornamental_gable << r.gable_overtop
+      << r.roof_shapes << r.roof_element_width << r.roof_element_distance << r.roof_eaves_distance
+      << r.roof_side_distance;
 }
 
 }  // namespace

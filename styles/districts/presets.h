@@ -29,7 +29,7 @@ struct PresetMeasures {
 /// What a preset promises of the houses that wear it: measured on the finished house, each miss is told (REQUIREMENT_MISSED).
 /// Metres and ratios; what is empty asks nothing. The set is Holtmeier's (2020, section 5).
 struct PresetRequirements {
-  std::vector<double> upper_storeys;                 ///< [least, most] above the ground floor; or empty
+  std::vector<double> upper_storeys;          ///< [least, most] above the ground floor; or empty
   std::optional<double> upper_windows_from;   ///< above the ground floor's level: a high ground floor below them
   std::optional<double> door_height;          ///< at least
   std::optional<double> window_ratio;         ///< height over width of upper windows, at least

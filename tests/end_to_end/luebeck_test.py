@@ -296,7 +296,7 @@ parameters = { least_ratio = 1.0, window_ratio = 1.1, ground_floor = 3.2, gable 
             self.assertIn(rule, words)
         self.assertGreater(max(map(len, told.values())), 40)
         explained = blockrand('explain', out, self.missed(out)[0]['id'])
-        self.assertIn('preset states', explained.out)
+        self.assertIn('misses a measure', explained.out)
 
 
 if __name__ == '__main__':

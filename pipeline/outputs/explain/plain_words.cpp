@@ -195,6 +195,7 @@ std::string_view consequence_words(std::string_view code) {
       {"PLAN_SIMPLIFIED", "its outline was simplified, or no sound body could have been built"},
       {"REST_FAILED", "what its mapped parts leave free could not be built, so a piece may be missing"},
       {"ROOF_WITH_BAYS", "one roof over everything does not fit, so every bay has slopes of its own"},
+      {"REQUIREMENT_MISSED", "it misses a measure that houses of its kind shall keep"},
       {"VALUE_UNREADABLE", "a tag cannot be read and was left aside"},
       {"VALUE_CLAMPED", "a tag has an impossible value, which was limited"},
       {"DUPLICATE_KEY", "a tag stands twice in the map, and the first one counts"},
