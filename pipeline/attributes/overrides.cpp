@@ -440,7 +440,7 @@ const UseDefaults& with_overrides(const OverrideEntry* entry, const UseDefaults&
   const double* plinth = entry ? entry->number("plinth_height") : nullptr;
   if (!height && !plinth) return usual;
   storage = usual;
-  if (height) storage.storey_height = *height;
+  if (height) storage.storey_height = *height, storage.heights_preset.clear();  // whatever a preset states
   if (plinth) storage.plinth = 0;  // the ordered one is the ground floor's level (override_ground)
   return storage;
 }

@@ -85,12 +85,16 @@ class RoofDresser {
       if (!standing) continue;
       if (!looked) others = others_near(building), looked = true;
       left_out_.clear();
+      other_gables_ = 0;
       dress_body(building, body, *standing, segments, others);
-      if (left_out_.empty()) continue;
+      if (left_out_.empty() && other_gables_ == 0) continue;
       body.fallbacks.push_back(model::IssueCode::roof_element_left_out);
       std::string text;
       for (const auto& [kind, count] : left_out_)
         text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", model::name(kind), count);
+      if (other_gables_ > 0)
+        text +=
+            fmt::format("{}gables of other steps or curves than ordered: {}", text.empty() ? "" : ", ", other_gables_);
       report.add(body.osm, model::IssueCode::roof_element_left_out, text);
     }
   }
@@ -349,10 +353,11 @@ class RoofDresser {
       // Where nothing rises behind, no gable looks on the street.
       if (standing.gable->form != roofs::GableForm::attic && !rises(standing.roof.wall_tops[i])) continue;
       roofs::BuiltGable made;
-      for (const roofs::GableOptions& form : forms_like(*standing.gable)) {
-        made = roofs::ornamental_gable(standing.plan, standing.roof, i, form);
-        if (made.body || made.refusal != roofs::GableRefusal::form) break;
-      }
+      const std::vector<roofs::GableOptions> forms = forms_like(*standing.gable);
+      std::size_t tried = 0;
+      do {
+        made = roofs::ornamental_gable(standing.plan, standing.roof, i, forms[tried]);
+      } while (!made.body && made.refusal == roofs::GableRefusal::form && ++tried < forms.size());
       if (!made.body) {
         ++left_out_[RoofElementKind::gable];
         continue;
@@ -365,6 +370,7 @@ class RoofDresser {
       if (std::ranges::any_of(gables, [&](const std::vector<Point2>& other) { return common(other); })) continue;
       gables.push_back(made.place);
       has_gable[i] = true;
+      if (tried > 0) ++other_gables_;
       if (std::ranges::any_of(taken, common)) {
         auto& standing_there = body.lod3.roof_installations;
         const auto gone = std::remove_if(standing_there.begin(), standing_there.end(), [&](const auto& stack) {
@@ -399,6 +405,7 @@ class RoofDresser {
   const OutlinesNear& outlines_near_;
   model::Face board_, sheet_;
   std::map<RoofElementKind, int> left_out_;  ///< of the body at work
+  int other_gables_ = 0;                     ///< that stand with other steps or curves than rules ordered
 };
 
 }  // namespace

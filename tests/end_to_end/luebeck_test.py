@@ -11,7 +11,7 @@ import sys
 import unittest
 
 import validators
-from blockrand_run import SOURCE, BuildTest, blockrand, main, read_json
+from blockrand_run import SOURCE, BuildTest, blockrand, extract, main, read_json
 
 SCRIPT = os.path.join(SOURCE, 'samples', 'luebeck_quarter.py')
 LOD3 = ('--lod', '3', '--formats', 'cityjson,gltf')
@@ -274,6 +274,58 @@ class Luebeck(BuildTest):
         shapes = [{h.shape() for h in houses} for houses in (first, second)]
         self.assertEqual([len(s) for s in shapes], [64, 64])
         self.assertEqual(shapes[0] & shapes[1], set())
+
+    def test_orders_beat_what_presets_state(self):
+        """A preset of a rule set's own states measures; an override comes before them."""
+        rules = self.place('own.toml', '''
+title = "own"
+[presets.tall]
+description = "tall houses"
+class = "other"
+grammar = "merchant_gable.cga"
+[presets.tall.measures]
+ground_floor_height = 5
+storey_height = 4
+roof = { pyramidal = 1 }
+[presets.tall.requirements]
+upper_storeys = [0, 0]
+[[rule]]
+name = "all"
+level = "city"
+preset = "tall"
+''')
+        orders = self.place('orders.toml', '[w2]\nstorey_height = 2.9\n[w3]\nroof_shape = "flat"\n')
+        out, houses = self.quarter(1, '--districts', rules, '--overrides', orders)
+        self.assertEqual(len(self.missed(out)), 64)
+        for house in houses:
+            a = house.attributes
+            n = a['storeys']
+            wanted = 2.9 if house.id == 'w2' else (5 + 4 * (n - 1)) / n
+            self.assertAlmostEqual(a['storey_height'], wanted, delta=1e-6, msg=house.id)
+            self.assertEqual(a['roof_shape'], 'flat' if house.id == 'w3' else 'pyramidal', house.id)
+
+    def test_on_mapped_houses(self):
+        """The same presets where tags and odd plans leave less room: sound, and what is missed or replaced is told."""
+        husum = extract('husum_altstadt.osm.pbf')
+        if not husum:
+            self.skipTest('no shared data')
+        rules = self.place('husum.toml', '''
+title = "Husum"
+base = "germany_west"
+[[rule]]
+name = "old houses"
+priority = 200
+which.era = "pre1840"
+which.probability = 0.3
+which.house = true
+preset = { merchant_gable = 0.6, merchant_attic = 0.15, merchant_eaves = 0.25 }
+''')
+        out = self.build(husum, 'husum', '--lod', '3', '--formats', 'citygml', '--districts', rules)
+        sound = blockrand('validate', out)
+        self.assertEqual(sound.code, 0, sound)
+        self.assertGreater(len(self.missed(out)), 50)
+        self.assertTrue(any('gables of other steps or curves than ordered' in row['detail']
+                            for row in read_json(out, 'report.json')['fallbacks']))
 
     def test_broken_rules_are_told(self):
         """H40: house, rule and measure."""
