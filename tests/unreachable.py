@@ -10,8 +10,8 @@ listed: the ones that only tests call hang on a listed one. A function that its 
 behind: a function is listed only when no source of its folder calls it either, since any of them may be compiled as one
 with it. Sources are searched for its bare name: a dead function that calls itself, or whose namesake is called in its
 folder, is missed.
-Ends with 1 when a function is missing from the allowlist or an entry of the list is reached or gone, and with 77 (skipped)
-for programs of other processors than x86-64. unreachable_test.py proves it.
+Ends with 1 when a function is missing from the allowlist, when an entry of the list is reached or gone, or when a row of
+docs/internal/seeds.md is done by a test that calls a listed function (allowed or not); and with 77 (skipped) for programs of other processors than x86-64. unreachable_test.py proves it.
 """
 import bisect
 import collections
@@ -131,6 +131,37 @@ def unreachable(program, sources):
                    if n and n.startswith("blockrand::") and not called_in_its_source(n, sources)})
 
 
+TEST = re.compile(r"^[ \t]*TEST(?:_F|_P)?\s*\(\s*(\w+)\s*,\s*(\w+)\s*\)\s*\{", re.M)
+DONE = re.compile(r"^\| ([A-Z][A-Z0-9]*-?\d+) \|[^|]*\| done \|(.*)\|\s*$", re.M)
+
+
+def bodies_of_tests(sources):
+    """"Suite.Name" -> its body, from the texts of test sources: up to the first brace at the start of a line."""
+    bodies = {}
+    for text in sources:
+        for found in TEST.finditer(text):
+            end = text.find("\n}", found.end())
+            bodies[f"{found.group(1)}.{found.group(2)}"] = text[found.end():end if end >= 0 else len(text)]
+    return bodies
+
+
+def proved_by_the_dead(dead, ledger, bodies):
+    """Rows of docs/internal/seeds.md that are done by a test that calls a function which no command reaches."""
+    names = {short_name(name) for name in dead}
+    complaints = []
+    for row, reason in DONE.findall(ledger):
+        for test in re.findall(r"`([A-Z]\w*\.[A-Z]\w*)`", reason):
+            for name in sorted(names):
+                if re.search(r"(?<!\w)" + re.escape(name) + r"\s*\(", bodies.get(test, "")):
+                    complaints.append(f"{row} is done by {test}, which calls {name}: no command does")
+    return complaints
+
+
+def ledger_and_tests():
+    texts = [path.read_text(encoding="utf-8") for path in sorted((ROOT / "tests" / "unit").rglob("*.cpp"))]
+    return (ROOT / "docs" / "internal" / "seeds.md").read_text(encoding="utf-8"), bodies_of_tests(texts)
+
+
 def main(arguments, sources):
     if len(arguments) not in (1, 2):
         raise SystemExit(__doc__)
@@ -148,8 +179,11 @@ def main(arguments, sources):
         print(f"unreachable: only tests call {name}")
     for name in stale:
         print(f"unreachable: {name} is reached or gone: strike it from {arguments[1]}")
+    unproved = proved_by_the_dead(found, *ledger_and_tests())
+    for complaint in unproved:
+        print(f"unreachable: {complaint}")
     print(f"unreachable: {len(found)} functions, {len(allowed)} allowed, {len(new)} new, {len(stale)} stale")
-    return 1 if new or stale else 0
+    return 1 if new or stale or unproved else 0
 
 
 if __name__ == "__main__":

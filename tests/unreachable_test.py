@@ -4,6 +4,7 @@ import contextlib
 import io
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import unittest
@@ -77,6 +78,20 @@ class Unreachable(unittest.TestCase):
             code, said = self.judged(DEAD + [stale])
             self.assertEqual(code, 1)
             self.assertIn(f"{stale} is reached or gone", said)
+
+    def test_a_done_row_whose_test_calls_the_dead_is_refused(self):
+        ledger = ("| A01 | digs | done | `Digging.Works`, `Digging.Rests` |\n| A02 | digs | tests only | issue 3: `Digging.Works` |\n"
+                  "| A03 | rests | done | `Digging.Rests` |\n")
+        bodies = unreachable.bodies_of_tests([
+            "TEST(Digging, Works) {\n  EXPECT_EQ(dead (3), 4);\n}\n\nTEST_F(Digging, Rests) {\n  called(2);\n  undead(1);\n}\n"])
+        self.assertEqual(sorted(bodies), ["Digging.Rests", "Digging.Works"])
+        said = unreachable.proved_by_the_dead(DEAD, ledger, bodies)
+        self.assertEqual(said, ["A01 is done by Digging.Works, which calls dead: no command does"])
+        # The page and the tests of the repository are found: every done row that names unit tests names some that are there.
+        ledger, bodies = unreachable.ledger_and_tests()
+        named = [t for _, reason in unreachable.DONE.findall(ledger) for t in re.findall(r"`([A-Z]\w*\.[A-Z]\w*)`", reason)]
+        self.assertGreater(len(named), 200)
+        self.assertGreater(sum(t in bodies for t in named), 0.9 * len(named))
 
     def test_calls_in_its_own_source_stand_for_inlined_ones(self):
         name = "blockrand::grammar::Run::cases[abi:cxx11](int) const"

@@ -73,7 +73,7 @@ class AttributeReader {
 bool any_key_of_the_scheme(Tags tags) {
   for (const auto& [k, v] : tags)
     if (k.starts_with("building:") || k.starts_with("roof:") || k.ends_with("height") || k.ends_with("level") ||
-        k == osm_key::kLevels || k == osm_key::kLayer || k.starts_with("facade:") || k == osm_key::kStartDate ||
+        k == osm_key::kLevels || k == osm_key::kLayer || k == osm_key::kRoofPitches || k.starts_with("facade:") || k == osm_key::kStartDate ||
         k == osm_key::kConstructionDate || k == osm_key::kYearOfConstruction)
       return true;
   return false;
@@ -95,6 +95,16 @@ std::optional<model::ConstructionDate> read_construction_date(AttributeReader& r
   auto date = read.first({osm_key::kStartDate}, parse_construction_date);
   if (date && is_a_business_too(read)) date->confidence /= 2;
   return date;
+}
+
+model::SidePitches read_side_pitches(const AttributeReader& read, model::OsmId id, model::Report& report) {
+  const std::string_view text = read.value(osm_key::kRoofPitches);
+  if (text.empty()) return {};
+  const auto pitches = model::parse_side_pitches(text);
+  if (pitches) return *pitches;
+  report.add(id, IssueCode::value_unreadable,
+             std::string(osm_key::kRoofPitches) + "=" + std::string(text) + ": " + pitches.error());
+  return {};
 }
 
 }  // namespace
@@ -121,6 +131,7 @@ model::MappedAttributes read_attributes(model::OsmId id, model::ObjectKind kind,
   a.roof_angle = read.number({osm_key::kRoofAngle, osm_key::kBuildingRoofAngle}, 0, 89.9, false, parse_angle);
   a.roof_direction =
       read.number({osm_key::kRoofDirection, osm_key::kRoofSlopeDirection}, 0, 360, false, parse_direction);
+  a.side_pitches = read_side_pitches(read, id, report);
   a.roof_orientation =
       read.first({osm_key::kRoofOrientation, osm_key::kBuildingRoofOrientation}, parse_roof_orientation);
   a.roof_shape = read.first({osm_key::kRoofShape, osm_key::kBuildingRoofShape}, parse_roof_shape);

@@ -26,6 +26,7 @@ struct UseDefaults {
   double lowest_eaves = 0, highest_eaves = 60;  ///< m, of eaves that follow the width
   model::RoofShape roof_shape = model::RoofShape::flat;
   double roof_pitch = 38;
+  model::SidePitches side_pitches;  ///< of `preset`
   bool gable_to_street = false;  ///< of the style: narrow houses have their ridge square to the street
   std::string preset;            ///< that states roof, pitch or direction; empty: none does
   std::string heights_preset;    ///< that states heights of storeys; empty: none does

@@ -49,6 +49,13 @@ void give(const OverrideEntry& e, MappedAttributes& m, base::StringPool& strings
     m.roof_height.reset();
     if (!e.number("roof_storeys")) m.roof_storeys.reset();
   }
+  if (e.side_pitches.any()) {
+    // Whoever orders pitches wants their roof: its height follows.
+    m.side_pitches = e.side_pitches;
+    if (m.roof_shape == model::RoofShape::flat) m.roof_shape.reset();
+    if (!e.number("roof_height")) m.roof_height.reset();
+    if (!e.number("roof_storeys")) m.roof_storeys.reset();
+  }
   if (take("roof_shape", m.roof_shape) && *m.roof_shape == model::RoofShape::flat) {
     m.roof_height.reset();
     m.roof_angle.reset();
@@ -403,7 +410,7 @@ namespace {
 
 /// An entry that only keeps the buildings of a mapped area where they are.
 bool keeps_area(const OverrideEntry& entry, const model::Extract& extract) {
-  if (!entry.keeps_place || !entry.values.empty() || !entry.details.empty()) return false;
+  if (!entry.keeps_place || !entry.values.empty() || entry.side_pitches.any() || !entry.details.empty()) return false;
   const auto found = std::lower_bound(extract.features.begin(), extract.features.end(), entry.object,
                                       [](const model::Feature& f, OsmId id) { return f.id < id; });
   return found != extract.features.end() && found->id == entry.object && found->area;

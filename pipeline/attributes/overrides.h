@@ -34,6 +34,7 @@ struct OverrideEntry {
   int line = 0;
   std::map<std::string, OverrideValue> values;  ///< by the name of the attribute (model::for_each_attribute)
   std::vector<model::DetailOverride> details;
+  model::SidePitches side_pitches;     ///< roof_pitches, of single sides of the roof
   bool keeps_place = false;            ///< imagery = "off": no image moves the building, or those in the area
   model::MappedAttributes tagged;      ///< what the tags said before, once applied
   std::vector<std::string> conflicts;  ///< tags that gave way because orders contradict them, in words

@@ -122,6 +122,11 @@ class Reader {
           }
         },
         [](std::string_view, std::string_view) {});
+    if (const auto pitches = table.text("roof_pitches")) {
+      const auto read = model::parse_side_pitches(*pitches);
+      if (!read) table.fail("roof_pitches", read.error(), "Write roof_pitches = \"street 60, yard 30\".");
+      entry.side_pitches = *read;
+    }
     contradictions(table, entry);
     if (const auto imagery = table.text("imagery")) {
       if (*imagery != "off")
@@ -140,7 +145,7 @@ class Reader {
           this->entry(*table.table(key), body + "." + key, *part, building);
         }
     table.finish();
-    const bool orders = !entry.values.empty() || !entry.details.empty() || entry.keeps_place;
+    const bool orders = !entry.values.empty() || entry.side_pitches.any() || !entry.details.empty() || entry.keeps_place;
     if (!orders && !holds_parts) table.fail("", "[" + body + "] orders nothing", "Leave it out.");
     if (orders) out_.entries.push_back(std::move(entry));
   }
@@ -230,6 +235,8 @@ class Reader {
     const double* pitch = e.number("roof_pitch");
     if (flat && roof && *roof > 0)
       table.fail("roof_height", "contradicts roof_shape: a flat roof has none", "Leave it out.");
+    if (flat && e.side_pitches.any())
+      table.fail("roof_pitches", "contradicts roof_shape: a flat roof has none", "Leave it out.");
     if (flat && pitch && *pitch > 0)
       table.fail("roof_pitch", "contradicts roof_shape: a flat roof has none", "Leave it out.");
     const double *eaves = e.number("eaves_height"), *storeys = e.number("storeys");

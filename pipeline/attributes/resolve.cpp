@@ -60,7 +60,8 @@ const UseDefaults& with_preset(const Building& building, const MappedAttributes&
     return usual;
   const districts::PresetMeasures& m = *preset->measures;
   if (&usual != &storage) storage = usual;
-  if (m.roof_pitch || m.gable_to_street || !m.roof_shapes.empty()) storage.preset = preset->name;
+  if (m.roof_pitch || m.side_pitches.any() || m.gable_to_street || !m.roof_shapes.empty())
+    storage.preset = preset->name;
   if (m.storey_height || m.ground_floor_height) {
     const double upper = m.storey_height.value_or(usual.storey_height);
     const double storeys = std::max(1.0, mapped.storeys ? static_cast<double>(*mapped.storeys) : usual.storeys);
@@ -71,6 +72,7 @@ const UseDefaults& with_preset(const Building& building, const MappedAttributes&
   }
   if (m.plinth) storage.plinth = *m.plinth;
   if (m.roof_pitch) storage.roof_pitch = *m.roof_pitch;
+  storage.side_pitches = m.side_pitches;
   if (m.gable_to_street) storage.gable_to_street = *m.gable_to_street;
   if (!m.roof_shapes.empty()) {
     double drawn = base::random_unit(in.seed, building.osm.key(), "preset_roof");
@@ -295,6 +297,11 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
       part.attributes = r.resolve(lowest);
       const Source measured = part.attributes.roof_height.source;
       if (measured == Source::preset || measured == Source::default_) part.usual_pitch = r.usual_pitch_asked;
+      const bool ordered = part.mapped.side_pitches.any();  // a preset's pitches are of its sloped roofs alone
+      if (ordered || (r.side_pitches().any() && part.attributes.roof_shape.value != RoofShape::flat)) {
+        part.side_pitches = r.side_pitches();
+        part.other_sides_pitch = r.other_sides_pitch(part.attributes.roof_shape.value);
+      }
       tell(part.osm, tag_conflicts(part.mapped, {part.attributes.roof_shape.value, part.roof_plan,
                                                  r.usual.storey_height, !part.roof_lines.empty(), part.roof_edges}));
       tell(part.osm, std::move(r.against_terrain));

@@ -123,6 +123,13 @@ struct Resolver {
   /// A monument, a garage, a tank: houses around it say nothing of it.
   bool is_non_house() const { return building.style_known && building.style.non_house; }
 
+  /// What is ordered for single sides of the roof: by the object's tags, else by a preset.
+  const model::SidePitches& side_pitches() const {
+    return own.side_pitches.any() ? own.side_pitches : usual.side_pitches;
+  }
+  /// Degrees, of the sides of which nothing is ordered.
+  double other_sides_pitch(model::RoofShape shape) const;
+
   bool has_own_height() const { return own.height || own.storeys; }
 
   model::Sourced<double> storeys();
@@ -130,7 +137,7 @@ struct Resolver {
   /// True when the tags speak of a roof with a slope without naming its shape.
   bool tags_speak_of_slope() const {
     return (own.roof_storeys && *own.roof_storeys >= 1) || (own.roof_angle && *own.roof_angle >= 10) ||
-           (own.roof_height && *own.roof_height >= 1);
+           (own.roof_height && *own.roof_height >= 1) || own.side_pitches.any();
   }
 
   const model::Polygon& plan() const {

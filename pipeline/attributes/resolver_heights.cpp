@@ -193,7 +193,12 @@ void Resolver::derived(Attributes& a) {
   roofs::RoofRequest request = tagged_request(own, a.roof_shape.value, row());
   request.across = a.roof_orientation.value == RoofOrientation::across;
   request.axis_is_mapped = request.axis_is_mapped || gable_to_street;
-  if (const auto angle = useful_roof_angle(own, a.roof_shape.value)) {
+  request.side_pitches = side_pitches();
+  request.other_sides_pitch = other_sides_pitch(a.roof_shape.value);
+  if (request.side_pitches.any() && roofs::takes_side_pitches(a.roof_shape.value)) {
+    a.roof_pitch = make<double>(request.other_sides_pitch, a.roof_height.source, a.roof_height.confidence,
+                                "of sides without a pitch of their own; ordered: " + model::text(request.side_pitches));
+  } else if (const auto angle = useful_roof_angle(own, a.roof_shape.value)) {
     a.roof_pitch = make<double>(*angle, Source::tag, kTagConfidence, "tagged");
   } else {
     const roofs::MainSlope slope =

@@ -207,12 +207,26 @@ Sourced<double> Resolver::roof_height(RoofShape shape, RoofOrientation orientati
   return first(std::move(choices));
 }
 
+double Resolver::other_sides_pitch(RoofShape shape) const {
+  if (const auto angle = useful_roof_angle(own, shape)) return *angle;
+  return std::min(usual_pitch(shape, usual.roof_pitch), options.max_roof_pitch);
+}
+
 Choice<double> Resolver::usual_height(RoofShape shape, RoofOrientation orientation) {
   roofs::RoofRequest request = tagged_request(own, shape, row());
   request.across = orientation == RoofOrientation::across;
   request.axis_is_mapped = request.axis_is_mapped || gable_to_street;
+  request.side_pitches = side_pitches();
+  request.other_sides_pitch = other_sides_pitch(shape);
   const roofs::MainSlope slope =
       plan().outer.size() < 3 ? roofs::MainSlope{} : roofs::main_slope(plan(), request, true);
+  if (request.side_pitches.any() && roofs::takes_side_pitches(shape)) {
+    const double height = slope.run * tangent(request.other_sides_pitch) / slope.rise;
+    const bool mapped = own.side_pitches.any();
+    return {height, mapped ? Source::implied : measure_source(), mapped ? kImpliedConfidence : measure_confidence(),
+            fmt::format("pitches ordered by side: {}; {:.0f} degrees on the others", model::text(request.side_pitches),
+                        request.other_sides_pitch)};
+  }
   const auto* edges = model::constructed_as<model::EdgeRoof>(shape);
   if (edges && edges->eaves == model::EavesProfile::berlin)
     return {slope.run, measure_source(), measure_confidence(),
@@ -248,7 +262,7 @@ void Resolver::fit_roof_height(Attributes& a, bool storeys_known, double plinth,
     roof = whole;
     why = "what the height leaves";
   } else {
-    if (useful_roof_angle(own, a.roof_shape.value)) {
+    if (useful_roof_angle(own, a.roof_shape.value) || own.side_pitches.any()) {
       roof = std::min(wanted, roof_limit(own, a.height.value));
     } else {
       roof = std::min(wanted, 0.6 * whole);

@@ -235,6 +235,8 @@ roofs::RoofRequest tagged_request(const MappedAttributes& tags, RoofShape shape,
   request.axis_is_mapped = tags.roof_direction || tags.roof_orientation;
   if (tags.roof_direction) request.down = roofs::compass_vector(*tags.roof_direction);
   request.across = tags.roof_orientation == RoofOrientation::across;
+  request.side_pitches = tags.side_pitches;
+  request.other_sides_pitch = tags.roof_angle.value_or(0);
   return request;
 }
 

@@ -87,8 +87,11 @@ GrammarLibrary::GrammarLibrary(const std::string& folder, std::span<const Preset
   grammar::CheckOptions check_options;
   check_options.extensions = extension_operations();
   for (const ContextAttribute& attribute : context_attributes()) check_options.context.emplace_back(attribute.name);
-  const auto deriver_of = [&](const std::string& name) {
-    const std::string path = (std::filesystem::path(folder) / name).string();
+  const auto deriver_of = [&](const std::string& name, const std::string& beside) {
+    std::filesystem::path place = std::filesystem::path(folder) / name;
+    if (!beside.empty() && std::filesystem::exists(std::filesystem::path(beside) / name))
+      place = std::filesystem::path(beside) / name;
+    const std::string path = place.string();
     auto file = std::find_if(files_.begin(), files_.end(), [&](const auto& f) { return f->path == path; });
     if (file == files_.end()) {
       auto read = std::make_unique<File>();
@@ -112,8 +115,8 @@ GrammarLibrary::GrammarLibrary(const std::string& folder, std::span<const Preset
     Entry entry;
     entry.preset = preset.preset;
     entry.file = preset.file;
-    entry.deriver = deriver_of(preset.file);
-    if (!preset.roof_file.empty()) entry.roof = deriver_of(preset.roof_file);
+    entry.deriver = deriver_of(preset.file, preset.beside);
+    if (!preset.roof_file.empty()) entry.roof = deriver_of(preset.roof_file, preset.beside);
     for (const auto& [name, value] : preset.attributes) entry.attributes.emplace_back(name, value);
     entries_.push_back(std::move(entry));
   }
@@ -152,8 +155,10 @@ GrammarLibrary read_grammars(const std::string& configs, std::span<const distric
   std::vector<PresetGrammar> grammars;
   for (const districts::Preset& preset : presets) {
     if (preset.grammar.empty()) continue;
-    grammars.push_back(
-        {preset.name, preset.grammar, preset.attributes, preset.roof_grammar.value_or(usual ? kUsualRoofRules : "")});
+    std::filesystem::path declared = std::filesystem::path(preset.declared_in).parent_path();
+    if (!preset.declared_in.empty() && declared.empty()) declared = ".";
+    grammars.push_back({preset.name, preset.grammar, preset.attributes,
+                        preset.roof_grammar.value_or(usual ? kUsualRoofRules : ""), declared.string()});
   }
   return {folder.string(), grammars};
 }

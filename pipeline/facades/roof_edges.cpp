@@ -20,6 +20,7 @@
 #include "styles/roofs/caps.h"
 #include "styles/roofs/firewalls.h"
 #include "styles/roofs/gables.h"
+#include "styles/roofs/gutters.h"
 #include "styles/roofs/overhangs.h"
 #include "styles/roofs/parapets.h"
 #include "styles/roofs/roof_outline.h"
@@ -60,8 +61,9 @@ struct Looks {
 
 class RoofDresser {
  public:
-  RoofDresser(const masses::BuiltMasses& masses, const attributes::Defaults& defaults, const OutlinesNear& outlines)
-      : masses_(masses), defaults_(defaults), outlines_near_(outlines) {
+  RoofDresser(const std::vector<model::ColouredElement>& elements, const masses::BuiltMasses& masses,
+              const attributes::Defaults& defaults, const OutlinesNear& outlines)
+      : elements_(elements), masses_(masses), defaults_(defaults), outlines_near_(outlines) {
     const auto face = [&](const char* material, model::Colour colour) {
       model::Face f;
       f.material = static_cast<std::uint8_t>(std::max(defaults.material(material), 0));
@@ -121,11 +123,13 @@ class RoofDresser {
   }
 
   static void paint(model::RoofInstallation& body, const Looks& looks) {
+    const bool metal = body.kind == RoofElementKind::gutter || body.kind == RoofElementKind::downpipe;
     const bool hangs = body.kind == RoofElementKind::eaves || body.kind == RoofElementKind::verge;
     const bool cap = body.kind == RoofElementKind::ridge_cap || body.kind == RoofElementKind::hip_cap;
     for (model::Face& face : body.solid.faces) {
       const bool up = face.kind == SurfaceKind::roof;
-      const model::Face& look = hangs ? (up ? looks.roof : looks.board)
+      const model::Face& look = metal   ? looks.sheet
+                                : hangs ? (up ? looks.roof : looks.board)
                                 : cap ? looks.roof
                                 : up  ? looks.sheet
                                       : looks.wall;
@@ -170,6 +174,35 @@ class RoofDresser {
       }
     }
     return false;
+  }
+
+  /// Whether nothing that the facade has on a wall is in a downpipe's way: openings, balconies, bays.
+  bool may_come_down(const BuildingPart& body, Point2 foot, Point2 along, double half) const {
+    constexpr double kClear = 0.25;  // m beside openings, whose surrounds are as wide
+    constexpr double kOnWall = 0.6;  // m from the wall's line: reveals and bays are of this wall
+    const Point2 outward{along.y, -along.x};
+    const auto off_wall = [&](Point2 p) { return std::fabs(dot(p - foot, outward)) > kOnWall; };
+    const auto meets = [&](double least, double most) { return least < half + kClear && most > -half - kClear; };
+    for (const model::Opening& opening : body.lod3.openings) {
+      double least = 1e300, most = -1e300;
+      const model::Face& face = body.lod3.solid.faces[opening.polygon];
+      for (const std::uint32_t v : body.lod3.solid.indices_of(body.lod3.solid.loops_of(face)[0])) {
+        const Point2 p = body.lod3.solid.vertices[v].xy();
+        if (off_wall(p)) continue;
+        least = std::min(least, dot(p - foot, along)), most = std::max(most, dot(p - foot, along));
+      }
+      if (meets(least, most)) return false;
+    }
+    for (const model::Placement& placed : body.lod3.placements) {
+      const model::Element& element = *elements_[placed.element].element;
+      if ((element.kind != "balcony" && element.kind != "bay") || off_wall(placed.origin.xy())) continue;
+      const double at = dot(placed.origin.xy() - foot, along), turned = dot(placed.along, along);
+      double least = 1e300, most = -1e300;
+      for (const Point3& p : element.mesh.vertices)
+        least = std::min(least, at + turned * p.x), most = std::max(most, at + turned * p.x);
+      if (meets(least, most)) return false;
+    }
+    return true;
   }
 
   static Point2 before(const PlanEdge& e, double along, double by) {
@@ -282,7 +315,11 @@ class RoofDresser {
     const double usual_eaves = (old ? kOldEaves : kEaves) * (small ? 0.5 : 1);
     over.eaves = asked.eaves.value_or(usual_eaves);
     over.verge = asked.verge.value_or(usual_eaves * kVergeShare);
-    const std::vector<double> free = rooms_before(edges, kinds, others, std::max(over.eaves, over.verge));
+    const roofs::GutterOptions gutter;
+    const bool has_gutters = asked.gutters && !small && over.eaves > 0 && has_gutter(looks);
+    if (has_gutters) over.before_eaves = gutter.width;
+    const std::vector<double> free =
+        rooms_before(edges, kinds, others, std::max(over.eaves + over.before_eaves, over.verge));
     std::vector<roofs::OverhangRoom> rooms(edges.size());
     for (std::size_t i = 0; i < edges.size(); ++i) {
       double top = 1e300;
@@ -291,6 +328,12 @@ class RoofDresser {
     }
     roofs::BuiltOverhangs beyond = roofs::overhangs(plan, roof, rooms, over);
     take(std::move(beyond.elements), RoofElementKind::eaves);
+    if (has_gutters) {
+      roofs::MayComeDown may;
+      if (asked.downpipes)
+        may = [&](Point2 foot, Point2 along, double half) { return may_come_down(body, foot, along, half); };
+      take(roofs::gutters(beyond, standing.bottom, may, gutter), RoofElementKind::gutter);
+    }
     if (asked.caps && has_caps(looks)) {
       roofs::CapOptions caps;
       caps.profile =
@@ -394,12 +437,18 @@ class RoofDresser {
     return !people || !is_old(a);
   }
 
+  /// Thatch drips.
+  bool has_gutter(const Looks& looks) const {
+    return defaults_.materials[looks.roof.material].material_class.name != "thatch";
+  }
+
   /// Tiles and slates are capped; sheets, felt and thatch are not.
   bool has_caps(const Looks& looks) const {
     const std::string& material = defaults_.materials[looks.roof.material].material_class.name;
     return material == "roof_tiles" || material == "slate";
   }
 
+  const std::vector<model::ColouredElement>& elements_;
   const masses::BuiltMasses& masses_;
   const attributes::Defaults& defaults_;
   const OutlinesNear& outlines_near_;
@@ -413,7 +462,7 @@ class RoofDresser {
 void add_roof_edges(model::Region& region, const masses::BuiltMasses& masses, const attributes::Defaults& defaults,
                     const OutlinesNear& outlines_near) {
   for_each_owned_building(
-      region, [&] { return RoofDresser(masses, defaults, outlines_near); },
+      region, [&] { return RoofDresser(region.elements, masses, defaults, outlines_near); },
       [](RoofDresser& dresser, model::Building& building, std::uint32_t index, model::Report& report) {
         dresser.dress(building, index, report);
       });

@@ -56,8 +56,11 @@ std::optional<Checked> checked(Solid solid) {
 }
 
 /// What is asked of the roof; not yet its measures and the plan's edges.
-roofs::RoofRequest request_of(const model::Attributes& attributes, RoofShape shape) {
+roofs::RoofRequest request_of(const BuildingPart& part, RoofShape shape) {
+  const model::Attributes& attributes = part.attributes;
   roofs::RoofRequest request;
+  request.side_pitches = part.side_pitches;
+  request.other_sides_pitch = part.other_sides_pitch;
   request.shape = shape;
   if (attributes.roof_direction) request.down = roofs::compass_vector(attributes.roof_direction->value);
   request.across = attributes.roof_orientation.value == RoofOrientation::across;
@@ -247,12 +250,26 @@ class MassBuilder {
       if (!built || lowest_eaves(built->roof) < levels.bottom + least_wall(part, levels)) continue;
       if (!accept(part, plan, levels, materials, built->roof, built->shape)) continue;
       if (built->note != IssueCode::none) note(part, built->note, built->detail);
+      pitches_met_ = built->pitches_met;
       return true;
     }
     return false;
   }
 
+  /// The roof, and which of the pitches that were ordered for its sides it has not.
   void build_lod2(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeMaterials& materials) {
+    pitches_met_ = {};
+    build_roof_or_relative(part, plan, levels, materials);
+    model::SidePitches missed = part.side_pitches;
+    for (std::size_t i = 0; i < model::kPitchedSideCount; ++i)
+      if (pitches_met_.degrees[i] != 0) missed.degrees[i] = 0;
+    if (missed.any())
+      note(part, IssueCode::side_pitch_unread,
+           fmt::format("{}, roof built {}", model::text(missed), model::name(part.built_roof)));
+  }
+
+  void build_roof_or_relative(BuildingPart& part, const Polygon& plan, const Levels& levels,
+                              const EnvelopeMaterials& materials) {
     const RoofShape asked = part.attributes.roof_shape.value;
     if (is_unknown(asked)) note(part, IssueCode::roof_shape_unknown, asked == RoofShape::many ? "many" : "");
     const roofs::RoofMeasures measures{levels.eaves, levels.top - levels.eaves};
@@ -264,7 +281,7 @@ class MassBuilder {
     }
     if (asked != RoofShape::flat && !is_unknown(asked) && measures.height > 0) {
       const std::optional<Polygon> simplified = attributes::simpler_plan(plan, options_.simplify_tolerance);
-      roofs::RoofRequest request = request_of(part.attributes, asked);
+      roofs::RoofRequest request = request_of(part, asked);
       const auto in_row = [&](const Polygon& p) {
         return &p == &part.roof_plan ? part.roof_edges : attributes::roof_edges(*building_, p);
       };
@@ -309,7 +326,8 @@ class MassBuilder {
   const attributes::Defaults& defaults_;
   const attributes::GenerateOptions& options_;
   model::Building* building_ = nullptr;
-  BodyIndex body_;  ///< the part at work
+  BodyIndex body_;                   ///< the part at work
+  model::SidePitches pitches_met_;  ///< by the roof that stands on it
   std::vector<BuiltMasses::Entry> built_;
 };
 

@@ -18,6 +18,7 @@
 #include "pipeline/model/point.h"
 #include "pipeline/model/report.h"
 #include "pipeline/model/roof_shape.h"
+#include "pipeline/model/side_pitches.h"
 #include "pipeline/model/style.h"
 
 namespace blockrand::model {
@@ -48,6 +49,7 @@ struct MappedAttributes {
   std::optional<float> roof_height, roof_angle;
   std::optional<float> roof_direction;  ///< degrees clockwise from north, pointing down the slope
   std::optional<RoofOrientation> roof_orientation;
+  SidePitches side_pitches;  ///< of single sides of the roof
   std::optional<RoofShape> roof_shape;
   std::optional<Colour> wall_colour, roof_colour;
   base::StringId wall_material = 0, roof_material = 0;  ///< as tagged, 0 where absent

@@ -37,6 +37,8 @@ enum class IssueClass : std::uint8_t {
   X(roof_lines_ignored, "ROOF_LINES_IGNORED", fallback,                                                              \
     "The mapped ridges and edges make no roof; its shape was built.")                                                \
   X(roof_simplified, "ROOF_SIMPLIFIED", fallback, "The roof stands on a simplified plan.")                           \
+  X(side_pitch_unread, "SIDE_PITCH_UNREAD", fallback,                                                                \
+    "A pitch ordered for a side of the roof found no such side, or a roof that has none.")                           \
   X(skeleton_fallback, "SKELETON_FALLBACK", fallback, "The weighted skeleton gave up; CGAL's hips were built.")      \
   X(roof_row_ignored, "ROOF_ROW_IGNORED", fallback, "No valid roof between the party walls; it falls to all sides.") \
   X(roof_height_clamped, "ROOF_HEIGHT_CLAMPED", fallback, "The roof was higher than the building allows.")           \

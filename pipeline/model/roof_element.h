@@ -21,7 +21,9 @@ namespace blockrand::model {
   X(eaves, "eaves")                \
   X(verge, "verge")                \
   X(ridge_cap, "ridge_cap")        \
-  X(hip_cap, "hip_cap")
+  X(hip_cap, "hip_cap")            \
+  X(gutter, "gutter")              \
+  X(downpipe, "downpipe")
 // clang-format on
 
 /// The semantic class of an element. Dormers and cross gables are part of the building's envelope (Roof::elements); the

@@ -49,7 +49,7 @@ struct Body {
 /// millimetre or two, not to the last bit.
 bool leans_on_a_roof(std::string_view kind) {
   using enum model::RoofElementKind;
-  constexpr model::RoofElementKind kLeaning[] = {eaves, verge, ridge_cap, hip_cap, parapet, firewall, gable};
+  constexpr model::RoofElementKind kLeaning[] = {eaves, verge, ridge_cap, hip_cap, parapet, firewall, gable, gutter};
   return std::ranges::any_of(kLeaning, [kind](model::RoofElementKind k) { return model::name(k) == kind; });
 }
 

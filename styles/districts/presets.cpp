@@ -16,6 +16,11 @@ PresetMeasures read_measures(base::TomlTable& table) {
   out.storey_height = table.number("storey_height", 2, 10);
   out.plinth = table.number("plinth", 0, 3);
   out.roof_pitch = table.number("roof_pitch", 1, 85);
+  if (const auto text = table.text("roof_pitches")) {
+    const auto pitches = model::parse_side_pitches(*text);
+    if (!pitches) table.fail("roof_pitches", pitches.error(), "Write roof_pitches = \"street 60, yard 30\".");
+    out.side_pitches = *pitches;
+  }
   out.gable_to_street = table.boolean("gable_to_street");
   if (auto shares = table.table("roof")) {
     double sum = 0;

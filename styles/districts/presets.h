@@ -23,6 +23,7 @@ struct PresetMeasures {
   std::optional<double> plinth;                                  ///< from the ground up to the ground floor
   std::vector<std::pair<model::RoofShape, double>> roof_shapes;  ///< shares, sum 1: one is drawn for each house
   std::optional<double> roof_pitch;                              ///< above 0
+  model::SidePitches side_pitches;                               ///< of single sides of the roof
   std::optional<bool> gable_to_street;  ///< true: the ridge runs square to the street where the lot is narrow
 };
 
@@ -51,7 +52,7 @@ struct Preset {
   std::string description;  ///< one line
   model::StyleClass style = model::StyleClass::other;
   std::vector<std::string> substyles;  ///< ids of the catalogue of styles that it is meant for
-  std::string grammar{};               ///< rule file below configs/grammars; empty: its walls stay closed
+  std::string grammar{};               ///< rule file below configs/grammars, or beside the rule set; empty: walls stay closed
   /// The same for what stands on its roof; none: the usual one (roofscape.cga); empty: nothing stands there.
   std::optional<std::string> roof_grammar{};
   std::vector<std::pair<std::string, std::string>> attributes{};  ///< values of the rule files' attributes, by name

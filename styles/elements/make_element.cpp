@@ -43,7 +43,8 @@ std::vector<Parameter> in_range(const ElementKind& kind, std::span<const Paramet
   for (Parameter& p : out) {
     const ParameterInfo* info = find_parameter(kind, p.name);
     double* const number = std::get_if<double>(&p.value);
-    if (!info || !number || info->type == ParameterInfo::Type::word || info->type == ParameterInfo::Type::profile)
+    if (!info || !number || info->type == ParameterInfo::Type::word || info->type == ParameterInfo::Type::profile ||
+        info->type == ParameterInfo::Type::edge)
       continue;
     if (*number >= info->least && *number <= info->most) continue;
     *number = info->unit == "degrees" ? info->initial : std::clamp(*number, info->least, info->most);

@@ -26,12 +26,13 @@ struct ParameterInfo {
     whole,    ///< a whole number
     word,     ///< one of `words`
     profile,  ///< the name of a moulding in the library, or a program of the profile language
+    edge,     ///< a shape of an opening's edge by its name (edge_shapes()), or a program of the profile language
   };
   std::string name;
   std::string unit = {};  ///< "m", "degrees", "of the width"; empty for words and counts
   Type type = Type::number;
   double initial = 0, least = 0, most = 0;  ///< of numbers; of words `initial` is the index
-  std::vector<std::string> words = {};      ///< allowed words; of profiles the default's name alone
+  std::vector<std::string> words = {};      ///< allowed words; of profiles and edges the default's name alone
   std::string meaning;
 };
 

@@ -17,7 +17,19 @@ constexpr double kLeastOpening = 0.05;
 
 bool share(double v) { return v >= 0 && v <= 1; }
 
+/// Pairs of arcs that mirror each other: the second half walks the first one back. Sizes give the proportions.
+constexpr EdgeShape kEdgeShapes[] = {
+    {"straight", ""},
+    {"round", "Modifications { arc, abs, 0, 180, 1; }"},
+    {"basket", "Modifications { arc, abs, 0, 60, 1; arc, rel, 0, 60, 3; arc, rel, 0, 60, 1; }"},
+    {"pointed", "Modifications { arc, abs, 0, 60, 1; arc, abs, 120, 60, 1; }"},
+    {"ogee", "Modifications { arc, abs, 0, 75, 1; arc, rel, 0, -45, 1; arc, abs, 150, -45, 1; arc, rel, 0, 75, 1; }"},
+    {"gabled", "Modifications { line, abs, 45, 1; line, abs, 135, 1; }"},
+};
+
 }  // namespace
+
+std::span<const EdgeShape> edge_shapes() { return kEdgeShapes; }
 
 tl::expected<Outline, std::string> opening_outline(const OpeningRectangle& r, const OpeningEdges& given, bool door) {
   OpeningEdges edges = given;
@@ -59,6 +71,10 @@ tl::expected<Outline, std::string> opening_outline(const OpeningRectangle& r, co
       return model::snap(Point2{corners[k].x + along[k].x * s + inwards[k].x * inward,
                                 corners[k].y + along[k].y * s + inwards[k].y * inward});
     };
+    const auto shaped = [&](std::size_t n) { return edges[n].dominant && edges[n].profile && edges[n].size > 0; };
+    const bool vanishes = !e.profile && to - from > -1.0 / model::kGridStepsPerMetre &&
+                          to - from <= 1.0 / model::kGridStepsPerMetre && shaped((k + 1) % 4) && shaped((k + 3) % 4);
+    if (vanishes) continue;
     if (!(to - from > 1.0 / model::kGridStepsPerMetre))
       return tl::unexpected(fmt::format("nothing is left of the {} edge", kEdgeNames[k]));
     if (!e.profile || e.size == 0) {

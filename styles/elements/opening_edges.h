@@ -4,7 +4,9 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
 
 #include "styles/elements/profile.h"
@@ -31,6 +33,12 @@ struct OpeningEdge {
   std::optional<Profile> profile;
 };
 
+/// A shape of an edge by its name, as a program of the profile language; "straight" has none. Null: there is none of that name.
+struct EdgeShape {
+  std::string_view name, program;
+};
+std::span<const EdgeShape> edge_shapes();
+
 /// Bottom, right, top, left.
 using OpeningEdges = std::array<OpeningEdge, 4>;
 
@@ -38,6 +46,7 @@ using OpeningEdges = std::array<OpeningEdge, 4>;
 ///
 /// A dominant edge spans the whole width (a straight one up to its neighbours' inner lines); its neighbours end at its
 /// inner line. Two dominant neighbours are an error;
+/// a straight edge of which its neighbours leave nothing vanishes between them (an ellipse of two round jambs);
 /// where neither of two neighbours is dominant, head and sill are (docs/sources.md, Finkenzeller 4.7, 5).
 /// \param door  the lower edge is taken as it is: no strip, no shortening
 tl::expected<Outline, std::string> opening_outline(const OpeningRectangle& rectangle, const OpeningEdges& edges,

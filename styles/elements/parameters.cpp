@@ -96,6 +96,29 @@ tl::expected<Values, std::string> Values::check(const ElementKind& kind, std::sp
         }
         break;
       }
+      case ParameterInfo::Type::edge: {
+        if (!text)
+          return tl::unexpected(
+              fmt::format("{}: \"{}\" wants the name of an edge's shape or a program", kind.name, p.name));
+        std::string_view program = *text;
+        if (text->find('{') == std::string::npos) {
+          std::vector<std::string> known;
+          const EdgeShape* shape = nullptr;
+          for (const EdgeShape& s : edge_shapes()) {
+            known.emplace_back(s.name);
+            if (s.name == *text) shape = &s;
+          }
+          if (!shape)
+            return tl::unexpected(fmt::format("{}: there is no shape of an edge \"{}\"{}", kind.name, *text,
+                                              suggestion(*text, known)));
+          program = shape->program;
+        }
+        if (program.empty()) break;
+        auto parsed = parse_profile(program);
+        if (!parsed) return tl::unexpected(fmt::format("{}: \"{}\": {}", kind.name, p.name, parsed.error().text()));
+        out.programs_[i] = std::move(*parsed);
+        break;
+      }
     }
   }
   for (std::size_t i = 0; i < n; ++i) {
@@ -132,6 +155,13 @@ Profile Values::traced(const ProfileProgram& program) const {
   const int detail = this->detail();
   const Profile p = trace(program, arc_steps_at(detail));
   return detail == 0 ? silhouette(p) : p;
+}
+
+std::optional<Profile> Values::edge(std::string_view name) const {
+  const ProfileProgram& program = programs_[index(name)];
+  if (program.commands.empty()) return std::nullopt;
+  constexpr int kEdgeSteps[] = {2, 4, 6};  // straight pieces of a quarter circle by detail
+  return trace(program, kEdgeSteps[detail()]);
 }
 
 Profile Values::profile(std::string_view name) const { return traced(programs_[index(name)]); }

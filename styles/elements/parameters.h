@@ -3,6 +3,7 @@
 
 #include "styles/elements/make_element.h"
 #include "styles/elements/mesh_builder.h"
+#include "styles/elements/opening_edges.h"
 #include "styles/elements/opening_shape.h"
 
 namespace blockrand::elements {
@@ -20,6 +21,8 @@ class Values {
   bool is(std::string_view name, std::string_view word_) const { return word(name) == word_; }
   /// A moulding traced with as many pieces an arc as the detail asks for; lengths still to be scaled.
   Profile profile(std::string_view name) const;
+  /// The shape of an opening's edge; empty for straight ones.
+  std::optional<Profile> edge(std::string_view name) const;
   /// Any preset of the library, traced; empty when there is none of that name.
   Profile preset(std::string_view name) const;
   bool has(std::string_view name) const;
@@ -31,7 +34,7 @@ class Values {
   const ElementKind* kind_ = nullptr;
   const ProfileLibrary* profiles_ = nullptr;
   std::vector<double> numbers_;
-  std::vector<ProfileProgram> programs_;  ///< of profile parameters; empty for others
+  std::vector<ProfileProgram> programs_;  ///< of profiles and edges; empty for others and straight edges
 };
 
 /// What a generator works on.
@@ -47,6 +50,7 @@ Made make_casement_window(const Request&, Element&);
 Made make_double_casement(const Request&, Element&);
 Made make_shop_window(const Request&, Element&);
 Made make_cellar_window(const Request&, Element&);
+Made make_shaped_window(const Request&, Element&);
 Made make_house_door(const Request&, Element&);
 Made make_carriage_gateway(const Request&, Element&);
 Made make_reveal(const Request&, Element&);

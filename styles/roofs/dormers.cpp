@@ -57,19 +57,6 @@ std::vector<Point2> dormer_outline(const RoofSlope& plane, const DormerParameter
   return hull(outline_in_plane(*shape, plane));
 }
 
-bool add_dormer(Roof& roof, std::size_t surface, const DormerParameters& parameters, Point2 place,
-                std::span<const model::RoofEdge> edges, const ElementDistances& distances) {
-  const auto plane = roof_slope(roof, surface, edges);
-  if (!plane) return false;
-  const auto shape = shape_on(*plane, parameters);
-  if (!shape) return false;
-  auto outline = hull(outline_in_plane(*shape, *plane));
-  for (Point2& p : outline) p = {p.x + place.x, p.y + place.y};
-  if (!fits(*plane, outline, distances)) return false;
-  build_dormer(roof, *plane, *shape, place);
-  return true;
-}
-
 bool add_laid_out_dormer(Roof& roof, const RoofSlope& plane, const DormerParameters& parameters, Point2 place) {
   const auto shape = shape_on(plane, parameters);
   if (!shape) return false;

@@ -37,17 +37,11 @@ DormerParameters usual_dormer(DormerKind kind);
 std::vector<model::Point2> dormer_outline(const RoofSlope& plane, const DormerParameters& parameters);
 
 /// Builds a dormer into a surface of a roof: a hole in the surface, cheeks, roof and front over it, all of one new
-/// entry of roof.elements. The roof stays one closed surface; wall tops do not change.
-/// \param surface  index into roof.surfaces
-/// \param place    middle of the front's lower edge, in the coordinates of roof_slope()
-/// \param edges    the plan's edges, as in RoofRequest; may be empty
-/// \return false, and the roof as it was, when the surface takes no dormers or this one does not fit there with its
-/// distances
-bool add_dormer(Roof& roof, std::size_t surface, const DormerParameters& parameters, model::Point2 place,
-                std::span<const model::RoofEdge> edges = {}, const ElementDistances& distances = {});
-
-/// The same at a place that lay_out() found: nothing is asked again. \param plane  as the surface was then; dormers that were laid out
-/// with this one may stand there meanwhile
+/// entry of roof.elements. The roof stays one closed surface; wall tops do not change. lay_out() found the place: nothing is
+/// asked again.
+/// \param plane  as the surface was then; dormers that were laid out with this one may stand there meanwhile
+/// \param place  middle of the front's lower edge, in the plane's coordinates
+/// \return false, and the roof as it was, when the dormer makes no body on this plane
 bool add_laid_out_dormer(Roof& roof, const RoofSlope& plane, const DormerParameters& parameters, model::Point2 place);
 
 }  // namespace blockrand::roofs

@@ -99,11 +99,6 @@ double ElementDistances::from(BorderKind kind) const {
   return 0;
 }
 
-int most_elements(double length, double width, const ElementDistances& distances) {
-  const double room = length - 2 * distances.side + distances.between;
-  return std::max(0, static_cast<int>(std::floor(room / (width + distances.between) + kFound)));
-}
-
 bool takes_elements(const RoofSlope& plane) {
   return plane.rise >= base::tan((kFlattestSlope - 0.01) * base::kRadiansPerDegree) &&
          plane.rise <= base::tan((kSteepestSlope + 0.01) * base::kRadiansPerDegree);

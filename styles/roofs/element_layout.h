@@ -40,10 +40,6 @@ struct ElementDistances {
   double from(BorderKind kind) const;
 };
 
-/// The most elements of width `width` on a slope of length `length`, by Holtmeier's distances:
-/// floor((L - 2 * 1.0 + 1.5) / (d + 1.5)), at least 0.
-int most_elements(double length, double width, const ElementDistances& distances = {});
-
 /// True when the plane's pitch lies within kFlattestSlope to kSteepestSlope.
 bool takes_elements(const RoofSlope& plane);
 

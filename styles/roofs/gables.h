@@ -88,25 +88,4 @@ BuiltGable ornamental_gable(const model::Polygon& plan, const Roof& roof, std::u
 /// hide; attics before hips and flat roofs alone (docs/sources.md, Holtmeier 5.2).
 bool may_stand_before(GableForm form, model::RoofShape roof);
 
-/// How often what is drawn (docs/sources.md, Holtmeier 5.5, [P] there).
-struct GableWeights {
-  double attic = 0.2;                                       ///< share of all houses with a gable to the street
-  double stepped = 0.5, curved = 0.5;                       ///< of the others
-  double gabled = 0.5, half_hipped = 0.25, mansard = 0.25;  ///< roofs behind those; behind an attic a hip
-  double pediment = 0.5;                                    ///< share of attics that have one [P]
-};
-
-/// A gable house: the front and the roof behind it.
-struct DrawnGable {
-  GableOptions gable;
-  model::RoofShape roof = model::RoofShape::gabled;
-};
-
-/// Draws both; every choice is keyed by (seed, object, its name).
-DrawnGable draw_gable_house(std::uint64_t seed, std::uint64_t object, const GableWeights& weights = {});
-
-/// Draws a gable for a roof that is known. Empty where none may stand before it.
-std::optional<GableOptions> draw_gable(std::uint64_t seed, std::uint64_t object, model::RoofShape roof,
-                                       const GableWeights& weights = {});
-
 }  // namespace blockrand::roofs

@@ -57,6 +57,8 @@ class Overhangs {
             const OverhangOptions& options)
       : plan_(plan), edges_(plan_edges(plan)), options_(options) {
     const auto tops = top_segments(plan, roof);
+    rooms_.resize(edges_.size(), OverhangRoom{}.room);
+    for (std::size_t i = 0; i < rooms.size() && i < rooms_.size(); ++i) rooms_[i] = rooms[i].room;
     std::set<std::uint32_t> gables;
     for (const TopSegment& top : tops)
       if (rises(top)) gables.insert(top.edge);
@@ -123,6 +125,10 @@ class Overhangs {
       else if (shortened.contains(edge) || bare.contains(edge))
         ++out.elements.shortened;
     }
+    if (options_.before_eaves > 0) {
+      out.eaves = eaves_lines();
+      for (const Strip& s : strips_) out.strips.push_back(s.reach > 0 ? s.outline() : std::vector<Point2>());
+    }
     for (const Strip& s : strips_) {
       const Strip& next = strips_[s.after];
       if (s.reach == 0 || next.reach == 0 || !s.joined_after) continue;
@@ -139,6 +145,48 @@ class Overhangs {
   }
 
  private:
+  bool clear_of_all(const std::vector<Point2>& plan) const {
+    for (const Strip& s : strips_)
+      if (s.reach > 0 && convex_overlap(plan, s.outline(), kTouch)) return false;
+    return true;
+  }
+
+  /// The outer edges of the eaves, and of the same strips had they come farther out: where those stand in nothing's way.
+  std::vector<EavesLine> eaves_lines() const {
+    Overhangs wider = *this;
+    const auto widen = [&](double by) {
+      for (Strip& s : wider.strips_)
+        if (s.reach > 0 && s.kind == RoofElementKind::eaves) s.reach += by;
+      wider.join_all();
+      // Corners that are cut square here are so there: whether a mitre is too long hangs on the larger reach.
+      for (std::size_t i = 0; i < strips_.size(); ++i) {
+        Strip &w = wider.strips_[i], &next = wider.strips_[w.after];
+        if (strips_[i].joined_after || !w.joined_after) continue;
+        w.joined_after = false;
+        w.end = model::snap(strips_[i].end + w.top.outward() * (w.reach - strips_[i].reach));
+        next.start = model::snap(strips_[w.after].start + next.top.outward() * (next.reach - strips_[w.after].reach));
+      }
+    };
+    widen(options_.before_eaves + 2 * kTouch);  // what touches by rounding would overlap
+    const std::set<std::uint32_t> in_the_way = wider.conflicts();
+    widen(-2 * kTouch);
+    std::vector<EavesLine> out;
+    bool before_is_in = false;
+    for (std::uint32_t i = 0; i < strips_.size(); ++i) {
+      const Strip &s = strips_[i], &w = wider.strips_[i];
+      bool is_in = s.reach > 0 && s.kind == RoofElementKind::eaves && !in_the_way.contains(i) &&
+                         w.reach <= rooms_[s.top.edge];
+      is_in = is_in && clear_of_all({s.start, w.start, w.end, s.end});
+      if (!out.empty() && before_is_in) out.back().joined_after &= is_in;
+      before_is_in = is_in;
+      if (!is_in) continue;
+      const double a = height(s, s.top.from, s.start), b = height(s, s.top.to, s.end);
+      out.push_back({{s.start.x, s.start.y, a}, {s.end.x, s.end.y, b}, w.start, w.end, s.top.along, s.reach, i,
+                     s.joined_after && w.joined_after && s.after == i + 1});
+    }
+    return out;
+  }
+
   static double height(const Strip& s, Point3 inner, Point2 outer) {
     return inner.z + dot(s.top.gradient, {outer.x - inner.x, outer.y - inner.y});
   }
@@ -277,6 +325,7 @@ class Overhangs {
 
   const model::Polygon& plan_;
   std::vector<PlanEdge> edges_;
+  std::vector<double> rooms_;  ///< m before each plan edge
   std::vector<Strip> strips_;
   OverhangOptions options_;
 };

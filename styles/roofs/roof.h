@@ -13,6 +13,7 @@
 #include "pipeline/model/roof_element.h"
 #include "pipeline/model/roof_line.h"
 #include "pipeline/model/roof_shape.h"
+#include "pipeline/model/side_pitches.h"
 
 namespace blockrand::roofs {
 
@@ -45,6 +46,8 @@ struct RoofRequest {
   std::optional<model::Point2> down;  ///< unit vector down the slope (roof:direction)
   bool across = false;                ///< roof:orientation=across: the axis is the shorter side
   double attic = 0;                   ///< m, mansard and gambrel: height of the break above the eaves; 0: by the table
+  model::SidePitches side_pitches;  ///< of shapes with one pitch on all sides; others do not read it
+  double other_sides_pitch = 0;     ///< degrees, of the sides without one of their own; wanted beside `side_pitches`
   double coarseness = 1;              ///< geometry::roof_surfaces(); for a second try
   /// One per plan edge, ring by ring; empty: all open. Party walls turn ridges and make lean-to roofs (roof_sides.h).
   std::vector<model::RoofEdge> edges;
@@ -61,6 +64,7 @@ struct BuiltRoof {
   model::RoofShape shape = model::RoofShape::flat;  ///< differs from the asked one where the plan does not take it
   model::IssueCode note = model::IssueCode::none;   ///< ROOF_SHAPE_ADAPTED, ROOF_SHAPE_UNKNOWN, SKELETON_FALLBACK
   std::string detail;
+  model::SidePitches pitches_met{};  ///< of RoofRequest::side_pitches those that a side of the roof has
 };
 
 /// The roof of `request.shape` on a plan (strictly simple, on the grid). Empty when none can be built, which callers
@@ -108,6 +112,9 @@ struct MainSlope {
   double rise = 1;     ///< share of the roof's height
   bool leans = false;  ///< of a lean-to in a row, whose usual pitch is gentler
 };
+
+/// Shapes whose sides may have pitches of their own (RoofRequest::side_pitches): what rises from edges with one pitch.
+bool takes_side_pitches(model::RoofShape shape);
 
 /// The main slope of `request.shape` on a plan (docs/roofs.md, "Tags"). Of plans of one wing that stand free, from their extents
 /// alone: exact on rectangles, near on others. In rows and on plans of several wings, from the skeleton, so that a pitch is

@@ -49,7 +49,7 @@ double way_down(const Polygon& plan, const RoofRequest& request, const model::Pr
 bool needs_skeleton(const Polygon& plan, const RoofRequest& request, const model::EdgeRoof& roof) {
   const bool in_row =
       std::find(request.edges.begin(), request.edges.end(), model::RoofEdge::party_wall) != request.edges.end();
-  return in_row || roof.eaves == EavesProfile::berlin || !is_one_wing(plan) ||
+  return in_row || (request.side_pitches.any() && takes_side_pitches(request.shape)) || roof.eaves == EavesProfile::berlin || !is_one_wing(plan) ||
          (request.along_eaves_lines && eaves_plan(plan, request.edges));
 }
 
@@ -114,6 +114,11 @@ struct SlopeFinder {
 
 double mansard_height(double run, double attic) {
   return attic + std::max(0.0, run - attic / kMansardSteep) * kMansardGentle;
+}
+
+bool takes_side_pitches(model::RoofShape shape) {
+  const auto* roof = model::constructed_as<model::EdgeRoof>(shape);
+  return roof && roof->eaves == EavesProfile::one_pitch;
 }
 
 bool has_plain_extents(const Polygon& plan) { return is_one_wing(plan); }

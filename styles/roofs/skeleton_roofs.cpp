@@ -25,6 +25,7 @@ using geometry::WeightedSkeleton;
 using model::EavesProfile;
 using model::EdgeRoof;
 using model::IssueCode;
+using model::PitchedSide;
 using model::Point2;
 using model::Point3;
 using model::Polygon;
@@ -118,7 +119,7 @@ static_assert(ends_fit_eaves());
 class Builder {
  public:
   Builder(const Polygon& plan, const RoofRequest& request, const EdgeRoof& form)
-      : plan_(plan), request_(request), form_(form), sides_(roof_sides(plan, request, ends_apart())) {}
+      : plan_(plan), request_(request), form_(form), plan_sides_(plan_sides(plan)), sides_(roof_sides(plan, request, ends_apart())) {}
 
   bool leans() const { return sides_.leans; }
 
@@ -157,6 +158,39 @@ class Builder {
   /// Do the ends of wings rise in another way than eaves?
   bool ends_apart() const { return form_.ends != WingEnds::hips; }
 
+  /// The order of an edge's side, and how much steeper it is than sides without one: 1 where nothing is ordered.
+  struct Steeper {
+    std::optional<PitchedSide> side;
+    double times = 1;
+  };
+  Steeper steeper(std::size_t edge) const {
+    const model::SidePitches& ordered = request_.side_pitches;
+    if (!ordered.any() || request_.other_sides_pitch <= 0 || form_.eaves != EavesProfile::one_pitch) return {};
+    const Point2 out = plan_sides_[edge].outwards();
+    const PitchedSide quarter = std::fabs(out.y) >= std::fabs(out.x)
+                                    ? (out.y > 0 ? PitchedSide::north : PitchedSide::south)
+                                    : (out.x > 0 ? PitchedSide::east : PitchedSide::west);
+    const bool street = edge < request_.edges.size() && request_.edges[edge] == model::RoofEdge::street;
+    for (const PitchedSide side : {quarter, street ? PitchedSide::street : PitchedSide::yard})
+      if (const int degrees = ordered.degrees[static_cast<std::size_t>(side)]; degrees > 0)
+        return {side, tangent(degrees) / tangent(request_.other_sides_pitch)};
+    return {};
+  }
+  static double tangent(double degrees) { return base::tan(degrees * base::kRadiansPerDegree); }
+
+  /// The orders that a side of this roof has.
+  model::SidePitches pitches_met() const {
+    model::SidePitches met;
+    for (std::size_t e = 0; e < sides_.sides.size(); ++e) {
+      if (sides_.sides[e] != RoofSide::eaves) continue;
+      if (const Steeper s = steeper(e); s.side) {
+        const auto i = static_cast<std::size_t>(*s.side);
+        met.degrees[i] = request_.side_pitches.degrees[i];
+      }
+    }
+    return met;
+  }
+
   /// What rises from every edge: eaves, gentler eaves of lean-to slopes, walls; and from the yard's corner.
   struct Profiles {
     std::vector<EdgeProfile> edges;
@@ -169,6 +203,8 @@ class Builder {
                           : side == RoofSide::lean && !sides_.leans ? pitch(kLeanSlope)
                           : side == RoofSide::lean                  ? eaves
                                                                     : upright());
+    for (std::size_t e = 0; e < out.edges.size(); ++e)
+      if (sides_.sides[e] == RoofSide::eaves) out.edges[e].slope *= steeper(e).times;
     if (sides_.corner) out.corners.push_back({*sides_.corner, eaves});
     return out;
   }
@@ -260,6 +296,7 @@ class Builder {
     const Skeleton s = skeleton(profiles, deck);
     if (!s) return fallback();
     BuiltRoof out{to_roof(plan_, *s, request_.measures, request_.coarseness), request_.shape, IssueCode::none, {}};
+    out.pitches_met = pitches_met();
     if (sides_.leans) out.shape = RoofShape::skillion;
     if (ends_apart() && !sides_.has(RoofSide::gable) && !sides_.has(RoofSide::party) && plan_.holes.empty()) {
       out.note = IssueCode::roof_shape_adapted;
@@ -280,6 +317,7 @@ class Builder {
   const Polygon& plan_;
   const RoofRequest& request_;
   const EdgeRoof form_;
+  const std::vector<PlanSide> plan_sides_;
   const RoofSides sides_;
 };
 

@@ -184,6 +184,7 @@ std::string_view consequence_words(std::string_view code) {
       {"ROOF_FAILED", "no sound roof could be built, so it is flat"},
       {"ROOF_LINES_IGNORED", "the ridges that are drawn in the map make no roof, so they were left aside"},
       {"ROOF_SIMPLIFIED", "the roof follows the outline only roughly"},
+      {"SIDE_PITCH_UNREAD", "a pitch ordered for one side of its roof found no such side, or a roof that has none"},
       {"SKELETON_FALLBACK", "the roof's slopes were laid out in a simpler way"},
       {"ROOF_ROW_IGNORED", "the roof could not end at the neighbours' walls, so it falls to all sides"},
       {"ROOF_HEIGHT_CLAMPED", "the roof would have been higher than the building, so it was lowered"},

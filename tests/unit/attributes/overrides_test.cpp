@@ -196,6 +196,17 @@ TEST(Overrides, ASlopeBeatsATaggedFlatRoof) {
   EXPECT_GT(a.roof_height.value, 2);
 }
 
+TEST(Overrides, PitchesOfSidesMakeTheRoof) {
+  House house("[w1]\nroof_pitches = \"street 60, yard 30\"\n");
+  house.tags().roof_shape = RoofShape::flat;
+  house.tags().storeys = 3;
+  const model::Attributes& a = house.resolve();
+  EXPECT_NE(a.roof_shape.value, RoofShape::flat);
+  EXPECT_GT(a.roof_height.value, 1);
+  EXPECT_EQ(model::text(house.region.buildings[0].parts[0].side_pitches), "street 60, yard 30");
+  EXPECT_THAT(house.why(a.roof_height.evidence).text, HasSubstr("street 60, yard 30"));
+}
+
 TEST(Overrides, WhatIsNotThereIsTold) {
   House house("[w1]\nstoreys = 3\n[w2]\nstoreys = 4\n[w1.w7]\nstoreys = 2\n");
   house.resolve();
@@ -227,6 +238,8 @@ TEST(Overrides, EveryMistakeIsToldAtItsPlace) {
       {"[w1]\nera = \"1900\"\n", {":2", "unknown"}},
       {"[w1]\nconstruction_date = \"old\"\n", {":2", "no year"}},
       {"[w1]\nheight = 12\nstorey_height = 3\n", {":3", "contradicts height"}},
+      {"[w1]\nroof_pitches = \"front 30\"\n", {":2", "begins with no side"}},
+      {"[w1]\nroof_shape = \"flat\"\nroof_pitches = \"street 30\"\n", {":3", "contradicts roof_shape"}},
       {"[w1]\nroof_height = 3\nroof_pitch = 30\n", {":3", "contradicts roof_height"}},
       {"[w1]\neaves_height = 12\n", {":2", "needs either"}},
       {"[w1]\nheight = 10\neaves_height = 12\n", {":3", "above the height"}},

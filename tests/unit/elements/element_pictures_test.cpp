@@ -160,6 +160,19 @@ std::vector<Shown> shown_of(const ElementKind& kind) {
     return {{w, h, {full}},
             {w, h, {full, {"head", "segmental"}, {"surround", "plain"}, {"grille", 0.0}}},
             {w, h, {full, {"sill", "plain"}, {"leaves", 2.0}}}};
+  if (n == "shaped_window")
+    return {{w, h, {full, {"top", "ogee"}, {"top_size", 0.35}, {"upright_bars", 1.0}, {"surround", "moulded"}}},
+            {w, w, {full, {"outline", "circular"}, {"bars", 1.0}, {"upright_bars", 1.0}, {"surround", "plain"}}},
+            {w, h, {full, {"top", "basket"}, {"top_size", 0.15}, {"bottom", "basket"}, {"bottom_size", 0.1}}},
+            {w,
+             h,
+             {full,
+              {"top_left", 0.25},
+              {"top_right", 0.25},
+              {"left_above", 0.2},
+              {"right_above", 0.2},
+              {"sill", "plain"},
+              {"bars", 2.0}}}};
   if (n == "house_door")
     return {{1.1, 2.5, {full, {"leaves", 1.0}, {"surround", "none"}, {"glazing", "upper"}, {"top_light", 0.0}}},
             {w, h, {full, {"pediment", "straight"}, {"pediment_consoles", "yes"}}},

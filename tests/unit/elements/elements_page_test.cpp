@@ -36,6 +36,8 @@ std::string range(const ParameterInfo& p) {
     }
     case ParameterInfo::Type::profile:
       return "a profile";
+    case ParameterInfo::Type::edge:
+      return "a shape of an edge";
   }
   return {};
 }
@@ -53,8 +55,9 @@ std::string table(const ElementKind& kind) {
   for (const ParameterInfo& p : kind.parameters) {
     const std::string initial = p.type == ParameterInfo::Type::word
                                     ? "`" + p.words[static_cast<std::size_t>(p.initial)] + "`"
-                                : p.type == ParameterInfo::Type::profile ? "`" + p.words[0] + "`"
-                                                                         : base::shortest(p.initial);
+                                : p.type == ParameterInfo::Type::profile || p.type == ParameterInfo::Type::edge
+                                    ? "`" + p.words[0] + "`"
+                                    : base::shortest(p.initial);
     out += fmt::format("| `{}` | {} | {} | {} | {} |\n", p.name, p.unit, range(p), initial, p.meaning);
   }
   out += "\nTriangles at detail 0, 1, 2:";

@@ -278,7 +278,12 @@ TEST(AllKinds, EveryParameterCounts) {
       {"bar", {{"bars", 1.0}, {"upright_bars", 1.0}}},
       {"door_width", {{"door", "left"}}},
       {"fanlight", {{"rise", 0.3}}},
-      {"detail", {{"head", "round"}}},
+      {"detail", {{"head", "round"}, {"outline", "circular"}}},
+      {"bottom", {{"bottom_size", 0.2}}},
+      {"right", {{"right_size", 0.2}}},
+      {"top", {{"top_size", 0.2}}},
+      {"left", {{"left_size", 0.2}}},
+      {"dominant", {{"top", "round"}, {"top_size", 0.2}, {"right", "round"}, {"right_size", 0.2}}},
       {"upright_bars", {{"rise", 0.3}}},
   };
   for (const ElementKind& kind : element_kinds())
@@ -317,6 +322,9 @@ TEST(AllKinds, EveryParameterCounts) {
           break;
         case ParameterInfo::Type::profile:
           other.push_back({p.name, p.words[0] == "cyma" ? "drip" : "cyma"});
+          break;
+        case ParameterInfo::Type::edge:
+          other.push_back({p.name, "round"});
           break;
       }
       const double w = kind.name == "shop_window" ? 5 : kind.width.usual, h = kind.height.usual * 1.2;

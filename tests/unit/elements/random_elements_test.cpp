@@ -7,6 +7,7 @@
 
 #include "pipeline/base/random.h"
 #include "styles/elements/make_element.h"
+#include "styles/elements/opening_edges.h"
 #include "styles/elements/mesh_builder.h"
 #include "tests/unit/elements/element_checks.h"
 #include "tests/unit/elements/mesh_measures.h"
@@ -47,6 +48,11 @@ std::vector<Parameter> drawn(const ElementKind& kind, Draws& draws) {
   for (const ParameterInfo& info : kind.parameters) {
     if (draws.unit() < 0.5) continue;
     const double limit = draws.unit();
+    if (kind.name == "shaped_window" && info.unit.starts_with("of the ")) {
+      // Edges that move in by more than a quarter leave no opening, mostly.
+      out.push_back({info.name, limit < 0.1 ? draws.between(0, 1) : draws.between(0, 0.25)});
+      continue;
+    }
     switch (info.type) {
       case ParameterInfo::Type::number:
         out.push_back({info.name, limit < 0.15  ? info.least
@@ -65,6 +71,12 @@ std::vector<Parameter> drawn(const ElementKind& kind, Draws& draws) {
         out.push_back(
             {info.name, presets[static_cast<std::size_t>(draws.whole(0, static_cast<double>(presets.size()) - 1))]});
         break;
+      case ParameterInfo::Type::edge: {
+        const auto shapes = edge_shapes();
+        const auto& shape = shapes[static_cast<std::size_t>(draws.whole(0, static_cast<double>(shapes.size()) - 1))];
+        out.push_back({info.name, std::string(shape.name)});
+        break;
+      }
     }
   }
   return out;
@@ -130,13 +142,20 @@ TEST_P(RandomElements, KeepTheirPromises) {
     ASSERT_TRUE(is_simple(outline)) << what;
     ASSERT_GT(signed_area(outline), 0) << what;
     const Bounds2 hole = bounds_of(outline);
-    ASSERT_NEAR(hole.width(), w, 0.0015) << what;
-    ASSERT_NEAR(hole.height(), h, 0.001) << what;
-    ASSERT_EQ(hole.least.y, 0) << what;
+    // Edges that are drawn one by one may move in, and need not be convex.
+    const bool shaped = kind.name == "shaped_window";
+    if (shaped) {
+      ASSERT_LE(std::max(-hole.least.x, hole.most.x), w / 2 + 0.001) << what;
+      ASSERT_TRUE(hole.least.y >= 0 && hole.most.y <= h + 0.001) << what;
+    } else {
+      ASSERT_NEAR(hole.width(), w, 0.0015) << what;
+      ASSERT_NEAR(hole.height(), h, 0.001) << what;
+      ASSERT_EQ(hole.least.y, 0) << what;
+    }
     for (std::size_t i = 0; i < outline.size(); ++i) {
       ASSERT_EQ(model::snap(outline[i]), outline[i]) << what;
       const model::Point2 a = outline[i], b = outline[(i + 1) % outline.size()], c = outline[(i + 2) % outline.size()];
-      ASSERT_GT((b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x), 0) << what << ": convex";
+      ASSERT_TRUE(shaped || (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x) > 0) << what << ": convex";
     }
     // Behind the reveal everything stays within the opening; before it only trim leaves it.
     for (const ElementFace& f : mesh.faces)
@@ -161,7 +180,8 @@ TEST_P(RandomElements, KeepTheirPromises) {
   RecordProperty("built", built);
   for (const auto& [reason, count] : reasons)
     if (std::getenv("ELEMENTS_REASONS")) fmt::print("  {} {} {}\n", kind.name, count, reason);
-  EXPECT_GE(built, 450) << refused << " refused";
+  // Four edges drawn at random seldom leave an opening.
+  EXPECT_GE(built, kind.name == "shaped_window" ? 150 : 450) << refused << " refused";
   EXPECT_GE(sound, validated * 97 / 100) << validated << " closed bodies judged";
   fmt::print("{}: {} built, {} refused; {} of {} closed bodies sound on the grid\n", kind.name, built, refused, sound,
              validated);

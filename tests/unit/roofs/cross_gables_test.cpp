@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/unit/roofs/element_houses.h"
+#include "tests/unit/roofs/placed_dormer.h"
 
 namespace blockrand::roofs {
 namespace {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "tests/unit/roofs/element_houses.h"
+#include "tests/unit/roofs/placed_dormer.h"
 
 namespace blockrand::roofs {
 namespace {

@@ -8,6 +8,7 @@
 #include "tests/unit/roofs/element_checks.h"
 #include "tests/unit/roofs/roof_checks.h"
 #include "tests/unit/roofs/roof_with_edges.h"
+#include "tests/unit/roofs/drawn_gables.h"
 
 namespace blockrand::roof_checks {
 namespace {
@@ -192,6 +193,8 @@ model::Colour colour_of(RoofElementKind kind, SurfaceKind face) {
     case RoofElementKind::chimney:
     case RoofElementKind::ridge_cap:
     case RoofElementKind::hip_cap:
+    case RoofElementKind::gutter:
+    case RoofElementKind::downpipe:
     default:
       return {120, 52, 40};
   }

@@ -27,13 +27,11 @@ std::vector<double> rounded(std::vector<double> values) {
 
 using Places = std::vector<double>;
 
-TEST(MostElements, IsHoltmeiersFormula) {
-  EXPECT_EQ(most_elements(10, 1.3), 3);   // (10 - 2 + 1.5) / 2.8 = 3.39
-  EXPECT_EQ(most_elements(3.3, 1.3), 1);  // exactly one: 1.0 + 1.3 + 1.0
-  EXPECT_EQ(most_elements(3.29, 1.3), 0);
-  EXPECT_EQ(most_elements(9.5, 3), 2);  // exactly two: 1.0 + 3 + 1.5 + 3 + 1.0
-  EXPECT_EQ(most_elements(9.49, 3), 1);
-  EXPECT_EQ(most_elements(1, 1), 0);
+/// The most elements of width `width` on a slope of length `length`: floor((L - 2 * 1.0 + 1.5) / (d + 1.5)), at least 0
+/// (docs/sources.md, Holtmeier 5.3).
+int most_elements(double length, double width) {
+  constexpr double kRounding = 1e-6;
+  return std::max(0, static_cast<int>(std::floor((length - 2 * 1.0 + 1.5) / (width + 1.5) + kRounding)));
 }
 
 TEST(Layout, TakesAsManyAsTheFormulaOnRectangles) {

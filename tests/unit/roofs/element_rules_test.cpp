@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/roofs/element_houses.h"
+#include "tests/unit/roofs/placed_dormer.h"
 
 namespace blockrand::roofs {
 namespace {

@@ -1,4 +1,5 @@
 #include "tests/unit/roofs/fitted_roof.h"
+#include "tests/unit/roofs/placed_dormer.h"
 
 #include <array>
 #include <limits>

@@ -16,6 +16,7 @@
 #include "tests/unit/roofs/element_checks.h"
 #include "tests/unit/roofs/roof_with_edges.h"
 #include "tests/unit/run/built_town.h"
+#include "tests/unit/roofs/drawn_gables.h"
 
 namespace blockrand::run::test {
 namespace {
