@@ -378,8 +378,8 @@ RoofOrders read_roof_orders(std::span<const std::pair<std::string, grammar::Valu
   out.edges.verge = stated("verge_overhang", kMostOverhang);
   out.edges.parapet = stated("parapet_height", 1.5);
   out.edges.caps = said.number("ridge_caps", 0, 1, 1) > 0.5;
-  out.edges.gutters = said.number("gutters", 0, 1, 1) > 0.5;
-  out.edges.downpipes = said.number("downpipes", 0, 1, 1) > 0.5;
+  out.edges.gutters = said.number("gutters", 0, 1, 0) > 0.5;
+  out.edges.downpipes = said.number("downpipes", 0, 1, 0) > 0.5;
   out.distances.eaves = said.number("roof_eaves_distance", 0.1, 10, out.distances.eaves);
   out.distances.between = said.number("roof_element_distance", 0.1, 10, out.distances.between);
   out.distances.side = said.number("roof_side_distance", 0.1, 10, out.distances.side);

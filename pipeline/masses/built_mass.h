@@ -17,8 +17,8 @@ struct RoofEdgeOrders {
   std::optional<double> eaves, verge;  ///< out from the wall; 0: none
   std::optional<double> parapet;       ///< high; 0: none
   bool caps = true;                    ///< along ridges and hips, where the material has some
-  bool gutters = true;                 ///< along eaves
-  bool downpipes = true;               ///< from gutters to the ground, where there is room
+  bool gutters = false;                ///< along eaves
+  bool downpipes = false;              ///< from gutters to the ground, where there is room
 };
 
 /// The plan that a body's LoD2 solid stands on and the roof that closes it, in the solid's own points: what later stages

@@ -1,6 +1,6 @@
 #include "styles/roofs/gutters.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -27,46 +27,21 @@ PlanCell cell_of(const EavesLine& l, const GutterOptions& o) {
             {l.to.xy(), b - o.depth, b, true}}}};
 }
 
-/// A pipe in the plane square to its wall: from under the gutter to the wall, down the wall.
-std::optional<model::Solid> pipe(Point2 foot, Point2 along, double out_above, double top, double bottom,
-                                 const GutterOptions& o) {
-  const double half = o.pipe / 2, at_wall = o.pipe_off + half, slant = out_above - at_wall;
-  constexpr double kLeastPipe = 0.5;  // m of upright pipe: lower eaves have none
-  // A bend of 45 degrees: mitres lie tan(22.5) of half the width off.
-  const double mitre = half * 0.41421356237309503;
-  const double stub = std::max(o.board - o.below_roof - o.depth, 0.0) + mitre + 0.01, bend = top - stub - std::max(slant, 0.0);
-  if (bend - bottom < kLeastPipe) return std::nullopt;
-  // (out of the wall, up), counter-clockwise seen along the wall's direction with the wall at the left.
-  std::vector<Point2> outline;
-  constexpr double kStraight = 0.02;
-  if (slant < kStraight) {
-    outline = {{out_above - half, bottom}, {out_above + half, bottom}, {out_above + half, top}, {out_above - half, top}};
-  } else {
-    outline = {{at_wall - half, bottom},
-               {at_wall + half, bottom},
-               {at_wall + half, bend - mitre},
-               {out_above + half, top - stub - mitre},
-               {out_above + half, top},
-               {out_above - half, top},
-               {out_above - half, top - stub + mitre},
-               {at_wall - half, bend + mitre}};
-  }
-  const Point2 outward{along.y, -along.x};
-  const auto place = [&](Point2 p, double side) {
-    return Point3{foot.x + outward.x * p.x + along.x * side, foot.y + outward.y * p.x + along.y * side, p.y};
-  };
+/// A pipe upright before its wall, from z = `bottom` to `top`.
+std::optional<model::Solid> pipe(Point2 foot, Point2 along, double top, double bottom, const GutterOptions& o) {
+  constexpr double kLeastPipe = 0.5;  // m: lower eaves have none
+  if (top - bottom < kLeastPipe) return std::nullopt;
+  const Point2 outward{along.y, -along.x}, side = along * (o.pipe / 2), near = foot + outward * o.pipe_off,
+               far = near + outward * o.pipe;
+  const Point2 plan[] = {near - side, near + side, far + side, far - side};
+  const auto at = [&](std::size_t i, double z) { return Point3{plan[i % 4].x, plan[i % 4].y, z}; };
+  model::Face looks;
+  looks.kind = SurfaceKind::wall;
   geometry::SolidBuilder builder;
-  std::vector<Point3> left, right;
-  for (const Point2 p : outline) left.push_back(place(p, -half));
-  for (auto p = outline.rbegin(); p != outline.rend(); ++p) right.push_back(place(*p, half));
-  model::Face side;
-  side.kind = SurfaceKind::wall;
-  builder.add_face(left, side);
-  builder.add_face(right, side);
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const Point2 a = outline[i], b = outline[(i + 1) % outline.size()];
-    builder.add_face(std::vector<Point3>{place(a, half), place(b, half), place(b, -half), place(a, -half)}, side);
-  }
+  builder.add_face(std::vector<Point3>{at(0, bottom), at(1, bottom), at(2, bottom), at(3, bottom)}, looks);
+  builder.add_face(std::vector<Point3>{at(3, top), at(2, top), at(1, top), at(0, top)}, looks);
+  for (std::size_t i = 0; i < 4; ++i)
+    builder.add_face(std::vector<Point3>{at(i, bottom), at(i, top), at(i + 1, top), at(i + 1, bottom)}, looks);
   return builder.take();
 }
 
@@ -84,19 +59,15 @@ BuiltElements gutters(const BuiltOverhangs& before, double bottom, const MayCome
   std::vector<bool> lost(lines.size(), false);
   for (const std::uint32_t i : made.lost) lost[i] = true;
 
-  std::vector<std::array<Point2, 3>> standing;  // of each pipe on the plan: at the wall, between, under the gutter
-  const auto is_near_another = [&](const std::array<Point2, 3>& place) {
-    constexpr double kBetween = 0.3;  // m
-    for (const auto& other : standing)
-      for (const Point2 a : place)
-        for (const Point2 b : other)
-          if (squared_distance(a, b) < kBetween * kBetween) return true;
-    return false;
+  std::vector<Point2> standing;  // feet of pipes
+  const auto is_near_another = [&](Point2 foot) {
+    constexpr double kBetween = 0.5;  // m
+    return std::ranges::any_of(standing, [&](Point2 p) { return squared_distance(p, foot) < kBetween * kBetween; });
   };
-  // The plan of a pipe from the wall to under its gutter meets no overhang but its own, below which it turns.
+  // Under its own overhang it may stand, under no other.
   const auto is_under_another = [&](const EavesLine& own, Point2 foot, Point2 outward) {
     constexpr double kTouch = 0.003;  // m
-    const Point2 side = own.along * (o.pipe / 2), out_there = outward * (own.reach + (o.width + o.pipe) / 2);
+    const Point2 side = own.along * (o.pipe / 2), out_there = outward * (o.pipe_off + o.pipe);
     const std::vector<Point2> plan{foot - side, foot + out_there - side, foot + out_there + side, foot + side};
     for (std::size_t i = 0; i < before.strips.size(); ++i)
       if (i != own.strip && !before.strips[i].empty() && convex_overlap(plan, before.strips[i], kTouch)) return true;
@@ -109,15 +80,16 @@ BuiltElements gutters(const BuiltOverhangs& before, double bottom, const MayCome
     const Point2 end = at_end ? l.to.xy() : l.from.xy();
     const double way = at_end ? -o.from_end - l.reach : o.from_end + l.reach;
     const Point2 foot{end.x - outward.x * l.reach + l.along.x * way, end.y - outward.y * l.reach + l.along.y * way};
-    const std::array<Point2, 3> place{foot, foot + outward * (l.reach / 2), foot + outward * (l.reach + o.width / 2)};
-    if (is_near_another(place) || is_under_another(l, foot, outward) || !may(foot, l.along, o.pipe / 2)) return false;
-    auto solid = pipe(foot, l.along, l.reach + o.width / 2,
-                      std::min(l.from.z, l.to.z) - o.below_roof - o.depth, bottom, o);
+    if (is_near_another(foot) || is_under_another(l, foot, outward) || !may(foot, l.along, o.pipe / 2)) return false;
+    // Up to the soffit, which rises towards the wall.
+    const double soffit = std::min(l.from.z, l.to.z) - o.board + std::max(l.reach - o.pipe_off - o.pipe, 0.0) * l.steepness;
+    constexpr double kUnderSoffit = 0.01;  // m
+    auto solid = pipe(foot, l.along, soffit - kUnderSoffit, bottom, o);
     if (!solid) return false;
     const auto triangles = geometry::triangulate(*solid);
     if (!triangles || !geometry::check_solid(*solid, *triangles, geometry::kBuilt).valid()) return false;
     out.bodies.push_back({RoofElementKind::downpipe, std::move(*solid), {}});
-    standing.push_back(place);
+    standing.push_back(foot);
     return true;
   };
   for (std::size_t first = 0; may && first < lines.size();) {

@@ -15,7 +15,7 @@ struct GutterOptions {
   double width = 0.12;        ///< of a half-round gutter of nominal size 250 to 333 (DIN EN 612:2005): 0.105 to 0.153
   double depth = 0.08;        ///< at the board
   double below_roof = 0.02;   ///< its rim under the upper side of the roof's edge
-  double board = 0.18;        ///< height of the eaves' board (OverhangOptions::thickness): pipes turn to the wall below it
+  double board = 0.18;        ///< height of the eaves' board (OverhangOptions::thickness): pipes end below the soffit
   double pipe = 0.09;         ///< side of a downpipe: nominal 80 to 100 (DIN EN 612:2005)
   double pipe_off = 0.04;     ///< between wall and downpipe: clips, and courses of the wall
   double least_run = 1.5;     ///< shorter gutters have no pipe of their own

@@ -78,7 +78,7 @@ class Overhangs {
         const OverhangRoom room = rooms.empty() ? OverhangRoom{} : rooms[s.top.edge];
         if (room.edge != RoofEdge::party_wall && room.room > 0) {
           s.asked = s.kind == RoofElementKind::verge ? options.verge : options.eaves;
-          const double steepness = std::fabs(dot(s.top.gradient, s.top.outward()));
+          const double steepness = -dot(s.top.gradient, s.top.outward());
           s.reach = std::min(s.asked, room.room);
           if (s.reach * steepness > options.most_drop) s.reach = options.most_drop / steepness;
           if (s.top.surface < 0 || s.reach < options.least) s.reach = 0;
@@ -174,14 +174,17 @@ class Overhangs {
     bool before_is_in = false;
     for (std::uint32_t i = 0; i < strips_.size(); ++i) {
       const Strip &s = strips_[i], &w = wider.strips_[i];
-      bool is_in = s.reach > 0 && s.kind == RoofElementKind::eaves && !in_the_way.contains(i) &&
+      // No water comes down to the high side of a lean-to.
+      constexpr double kLeastFall = 0.02;
+      const double falls = -dot(s.top.gradient, s.top.outward());
+      bool is_in = falls > kLeastFall && s.reach > 0 && s.kind == RoofElementKind::eaves && !in_the_way.contains(i) &&
                          w.reach <= rooms_[s.top.edge];
       is_in = is_in && clear_of_all({s.start, w.start, w.end, s.end});
       if (!out.empty() && before_is_in) out.back().joined_after &= is_in;
       before_is_in = is_in;
       if (!is_in) continue;
       const double a = height(s, s.top.from, s.start), b = height(s, s.top.to, s.end);
-      out.push_back({{s.start.x, s.start.y, a}, {s.end.x, s.end.y, b}, w.start, w.end, s.top.along, s.reach, i,
+      out.push_back({{s.start.x, s.start.y, a}, {s.end.x, s.end.y, b}, w.start, w.end, s.top.along, s.reach, falls, i,
                      s.joined_after && w.joined_after && s.after == i + 1});
     }
     return out;

@@ -45,6 +45,7 @@ struct EavesLine {
   model::Point2 out_from, out_to;  ///< of what lies OverhangOptions::before_eaves farther out
   model::Point2 along;            ///< unit vector
   double reach = 0;               ///< m from the wall
+  double steepness = 0;            ///< m up for each m towards the wall
   std::size_t strip = 0;          ///< into BuiltOverhangs::strips: its own
   bool joined_after = false;      ///< the next one begins where this one ends
 };
@@ -53,7 +54,7 @@ struct BuiltOverhangs {
   BuiltElements elements;  ///< kinds eaves and verge; `asked` counts plan edges with room that are no party walls
   std::vector<OverhangCorner> corners;
   std::vector<std::vector<model::Point2>> strips;  ///< the plan of every overhang, where `eaves` are asked for
-  std::vector<EavesLine> eaves;  ///< those before which OverhangOptions::before_eaves are free, ring by ring
+  std::vector<EavesLine> eaves;  ///< those that water comes down to, with OverhangOptions::before_eaves free before them, ring by ring
 };
 
 /// Continues the roof's surfaces in their planes beyond the walls: eaves where the upper end of a wall is level, verges

@@ -86,11 +86,12 @@ class RoofElements(BuildTest):
 
     def test_gutters_are_ordered(self):
         bare = 'dormer_share = 0, cross_gable_share = 0, '
-        usual = self.with_parameters('gutters', bare + 'gutters = 1')
+        usual = self.with_parameters('gutters', bare + 'gutters = 1, downpipes = 1')
         none = self.with_parameters('no_gutters', bare + 'gutters = 0')
         for kind in ('gutter', 'downpipe'):  # bodies beside the main one keep theirs
             self.assertGreater(self.gml(usual).count(f'>{kind}<'), 20, kind)
             self.assertLess(self.gml(none).count(f'>{kind}<'), self.gml(usual).count(f'>{kind}<') / 2, kind)
+        self.assertNotIn('>downpipe<', self.gml(self.with_parameters('as_usual', bare + 'gable = "none"')))
         self.assertEqual(validators.xmllint(usual), '')
         self.assertEqual(validators.khronos(usual), '')
         checked = blockrand('validate', usual)

@@ -26,7 +26,7 @@ constexpr double kVertexBytes = 8, kTriangleBytes = 1.5;
 
 /// Bytes that a draw less is worth: where a shape saves no more, its pieces are baked. From 0 to 9,000 were tried on four quarters: draws
 /// fall by a third for 1 to 4 % more packed bytes up to here, then bytes rise faster.
-constexpr double kDrawBytes = 2200;
+constexpr double kDrawBytes = 3500;
 
 /// Shapes of whole pieces that a plan has at least, if there are so many, and how the others are tried.
 constexpr std::size_t kFewestWhole = 16, kTrialStep = 4;

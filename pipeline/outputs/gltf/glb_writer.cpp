@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string_view>
@@ -289,6 +290,14 @@ nlohmann::ordered_json metadata(GlbDocument& document, const PropertyTable& tabl
   using Object = nlohmann::ordered_json;
   Object properties = table.class_properties();
   nlohmann::json enums = nlohmann::json::object(), known = building_enums();
+  // A tile lists the shapes of its own roofs.
+  for (auto& [name, enumeration] : known.items()) {
+    const std::set<int> used = table.values_used(name);
+    nlohmann::json values = nlohmann::json::array();
+    for (const nlohmann::json& entry : enumeration["values"])
+      if (used.contains(entry["value"].get<int>()) || entry["name"] == "none") values.push_back(entry);
+    enumeration["values"] = std::move(values);
+  }
   known.update(table.text_enums());
   for (const auto& [name, property] : properties.items())
     if (const auto type = property.find("enumType"); type != property.end()) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -50,16 +51,18 @@ class PieceWriter {
     };
     std::vector<Block> blocks;
     std::vector<Shown> shown;
-    std::size_t shared = model::kNoIndex;
+    // Upright shapes share a block; of the others those with the same steps a metre, whose largest extents are within a factor of
+    // two: readers that take an accessor's bounds for one shape's see it as large as the largest of them.
+    std::map<double, std::size_t> open_block;  // by steps a metre; 0: upright ones
     for (const PlacedPiece& piece : plan.placed) {
       const Piece& shape = piece.shape;
-      if (!shape.upright || shared == model::kNoIndex ||
-          blocks[shared].count + shape.vertices.size() > ElementGeometry::kMostVertices) {
-        blocks.emplace_back();
-        if (shape.upright) shared = blocks.size() - 1;
-      }
-      const std::size_t block = shape.upright ? shared : blocks.size() - 1;
       const Point3 units = units_of(shape);
+      const auto [place, added] = open_block.try_emplace(shape.upright ? 0 : units.x, blocks.size());
+      if (added || blocks[place->second].count + shape.vertices.size() > ElementGeometry::kMostVertices) {
+        place->second = blocks.size();
+        blocks.emplace_back();
+      }
+      const std::size_t block = place->second;
       const std::size_t first = add_shape(shape, units, blocks[block]);
       shown.push_back({&piece, units, block, first});
     }

@@ -174,6 +174,14 @@ nlohmann::json PropertyTable::text_enums() const {
   return out;
 }
 
+std::set<int> PropertyTable::values_used(std::string_view enum_type) const {
+  std::set<int> out;
+  for (const Data& data : columns_)
+    if (data.column.kind == Kind::enumeration && data.column.enum_type == enum_type)
+      for (const char value : data.bytes) out.insert(static_cast<std::uint8_t>(value));
+  return out;
+}
+
 std::vector<const PropertyTable::Data*> PropertyTable::listed() const {
   std::vector<const Data*> all;
   for (const Data& data : columns_) all.push_back(&data);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -56,6 +57,8 @@ class PropertyTable {
   nlohmann::ordered_json class_properties() const;
   /// What code_texts() made, by name.
   nlohmann::json text_enums() const;
+  /// The values of an enumeration that some row has, by value. \param enum_type  as in Column
+  std::set<int> values_used(std::string_view enum_type) const;
   /// The table, its columns added to `document` as buffer views.
   nlohmann::ordered_json write(GlbDocument& document, const std::string& class_name) const;
 

@@ -76,8 +76,10 @@ TEST(Gutters, RunBeforeTheEavesOfAGabledHouse) {
       EXPECT_LT(most.z, kEaves);
     } else if (body.kind == RoofElementKind::downpipe) {
       EXPECT_NEAR(in, kUsual.pipe_off, 0.01) << "clear of the wall";
-      EXPECT_LT(out, 0.52);
+      EXPECT_NEAR(out, kUsual.pipe_off + kUsual.pipe, 0.01);
       EXPECT_EQ(least.z, 0);
+      // Under a soffit that falls from the wall by 0.8 in 1.
+      EXPECT_NEAR(most.z, kEaves - kUsual.board - 0.13 * 0.8, 0.02);
       EXPECT_NEAR(most.x - least.x, kUsual.pipe, 0.01);
       EXPECT_TRUE(std::fabs((least.x + most.x) / 2 - 0.2) < 0.3 || std::fabs((least.x + most.x) / 2 - 19.8) < 0.3);
     }
