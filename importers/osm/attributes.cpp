@@ -73,8 +73,8 @@ class AttributeReader {
 bool any_key_of_the_scheme(Tags tags) {
   for (const auto& [k, v] : tags)
     if (k.starts_with("building:") || k.starts_with("roof:") || k.ends_with("height") || k.ends_with("level") ||
-        k == osm_key::kLevels || k == osm_key::kLayer || k == osm_key::kRoofPitches || k.starts_with("facade:") || k == osm_key::kStartDate ||
-        k == osm_key::kConstructionDate || k == osm_key::kYearOfConstruction)
+        k == osm_key::kLevels || k == osm_key::kLayer || k == osm_key::kRoofPitches || k.starts_with("facade:") ||
+        k == osm_key::kStartDate || k == osm_key::kConstructionDate || k == osm_key::kYearOfConstruction)
       return true;
   return false;
 }

@@ -27,9 +27,9 @@ struct UseDefaults {
   model::RoofShape roof_shape = model::RoofShape::flat;
   double roof_pitch = 38;
   model::SidePitches side_pitches;  ///< of `preset`
-  bool gable_to_street = false;  ///< of the style: narrow houses have their ridge square to the street
-  std::string preset;            ///< that states roof, pitch or direction; empty: none does
-  std::string heights_preset;    ///< that states heights of storeys; empty: none does
+  bool gable_to_street = false;     ///< of the style: narrow houses have their ridge square to the street
+  std::string preset;               ///< that states roof, pitch or direction; empty: none does
+  std::string heights_preset;       ///< that states heights of storeys; empty: none does
   double ground_floor_height = 0, upper_storey_height = 0;  ///< m, of that preset
   std::optional<model::RoofShape> drawn_roof;               ///< by that preset
   double pitched_width = 17;                                ///< wider plans get a flat roof

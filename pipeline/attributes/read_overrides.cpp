@@ -145,7 +145,8 @@ class Reader {
           this->entry(*table.table(key), body + "." + key, *part, building);
         }
     table.finish();
-    const bool orders = !entry.values.empty() || entry.side_pitches.any() || !entry.details.empty() || entry.keeps_place;
+    const bool orders =
+        !entry.values.empty() || entry.side_pitches.any() || !entry.details.empty() || entry.keeps_place;
     if (!orders && !holds_parts) table.fail("", "[" + body + "] orders nothing", "Leave it out.");
     if (orders) out_.entries.push_back(std::move(entry));
   }

@@ -27,7 +27,7 @@ struct PresetGrammar {
   std::string file;  ///< below the folder of grammars
   std::vector<std::pair<std::string, std::string>> attributes;
   std::string roof_file{};  ///< the same, what stands on its roof; empty: no dormers, cross gables, ornamental gables
-  std::string beside{};     ///< folder that is looked into first: that of the rule set which declares the preset; or empty
+  std::string beside{};  ///< folder that is looked into first: that of the rule set which declares the preset; or empty
 };
 
 /// The grammars of all presets. Immutable once made; used by all threads.

@@ -130,9 +130,9 @@ class RoofDresser {
       const bool up = face.kind == SurfaceKind::roof;
       const model::Face& look = metal   ? looks.sheet
                                 : hangs ? (up ? looks.roof : looks.board)
-                                : cap ? looks.roof
-                                : up  ? looks.sheet
-                                      : looks.wall;
+                                : cap   ? looks.roof
+                                : up    ? looks.sheet
+                                        : looks.wall;
       face.material = look.material, face.colour = look.colour;
     }
   }

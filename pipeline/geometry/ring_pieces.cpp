@@ -28,7 +28,8 @@ std::vector<RingPoints> pieces_of(const GEOSGeometry* geometry, double least) {
     if (signed_area(points) < 0) std::reverse(points.begin(), points.end());
     if (signed_area(points) >= least) out.push_back(std::move(points));
   }
-  std::stable_sort(out.begin(), out.end(), [](const RingPoints& a, const RingPoints& b) { return signed_area(a) > signed_area(b); });
+  std::stable_sort(out.begin(), out.end(),
+                   [](const RingPoints& a, const RingPoints& b) { return signed_area(a) > signed_area(b); });
   return out;
 }
 
@@ -42,7 +43,8 @@ std::vector<RingPoints> drawn_in(std::span<const model::Point2> ring, double dis
   return pieces_of(inner.get(), least);
 }
 
-std::vector<RingPoints> common_pieces(std::span<const model::Point2> a, std::span<const model::Point2> b, double least) {
+std::vector<RingPoints> common_pieces(std::span<const model::Point2> a, std::span<const model::Point2> b,
+                                      double least) {
   const geos::Geometry first = polygon_of(a), second = polygon_of(b);
   const geos::Geometry common(GEOSIntersection_r(geos::context(), first.get(), second.get()));
   return pieces_of(common.get(), least);

@@ -326,7 +326,7 @@ class MassBuilder {
   const attributes::Defaults& defaults_;
   const attributes::GenerateOptions& options_;
   model::Building* building_ = nullptr;
-  BodyIndex body_;                   ///< the part at work
+  BodyIndex body_;                  ///< the part at work
   model::SidePitches pitches_met_;  ///< by the roof that stands on it
   std::vector<BuiltMasses::Entry> built_;
 };

@@ -227,10 +227,10 @@ struct BuildingPart {
   bool rest = false;                      ///< what mapped parts leave of the outline
   std::vector<RoofLine> roof_lines;       ///< drawn on this plan, fitted to it, by id; with a ridge among them, or none
   Attributes attributes;
-  double usual_pitch = 0;  ///< degrees; what was asked of a roof that no tag measures, 0 for others
+  double usual_pitch = 0;        ///< degrees; what was asked of a roof that no tag measures, 0 for others
   SidePitches side_pitches;      ///< ordered for single sides of the roof
   double other_sides_pitch = 0;  ///< degrees, of the sides without one of their own; 0 where none is ordered
-  bool canopy = false;     ///< building=roof: a closed slab without walls
+  bool canopy = false;           ///< building=roof: a closed slab without walls
   RoofShape built_roof = RoofShape::flat;
   int lod = -1;      ///< highest level of detail built: 3, 2, 1, 0, or -1 for none
   Solid lod1, lod2;  ///< empty above `lod`, or where not asked for

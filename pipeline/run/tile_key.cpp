@@ -144,7 +144,8 @@ struct TileKeys::Impl {
     out << (preset && preset->measures);
     if (!preset || !preset->measures) return;
     const districts::PresetMeasures& m = *preset->measures;
-    out << preset->name << m.ground_floor_height << m.storey_height << m.plinth << m.roof_pitch << m.side_pitches << m.gable_to_street;
+    out << preset->name << m.ground_floor_height << m.storey_height << m.plinth << m.roof_pitch << m.side_pitches
+        << m.gable_to_street;
     out << static_cast<std::uint64_t>(m.roof_shapes.size());
     for (const auto& [shape, share] : m.roof_shapes) out << shape << share;
   }

@@ -156,30 +156,35 @@ ElementKind shop_window() {
 ElementKind shaped_window() {
   ElementKind k{.name = "shaped_window",
                 .semantic = ElementClass::window,
-                .meaning = "window of one pane whose four edges are drawn one by one (docs/sources.md, Finkenzeller 3.11.2): "
-                           "ogees, ellipses, cut corners",
+                .meaning =
+                    "window of one pane whose four edges are drawn one by one (docs/sources.md, Finkenzeller 3.11.2): "
+                    "ogees, ellipses, cut corners",
                 .width = {.measures = "opening", .least = 0.30, .usual = 1.00, .most = 6.00},
                 .height = {.measures = "opening", .least = 0.30, .usual = 2.00, .most = 8.00}};
   k.parameters = {
       number("reveal", "m", 0.14, 0, 0.40, "depth of the opening: wall's plane to the front of the frame"),
       word("outline", {"edges", "circular"}, "edges", "edges: as the four say; circular: an ellipse, all round"),
-      word("dominant", {"head_and_sill", "jambs"}, "head_and_sill", "which edges span the opening; the others end at them")};
+      word("dominant", {"head_and_sill", "jambs"}, "head_and_sill",
+           "which edges span the opening; the others end at them")};
   for (const char* edge : {"bottom", "right", "top", "left"}) {
     const std::string name = edge;
     const bool level = name == "bottom" || name == "top";
-    const std::string across = level ? "of the height" : "of the width", along = level ? "of the width" : "of the height";
-    k.parameters.push_back({.name = name,
-                            .type = Type::edge,
-                            .words = {"straight"},
-                            .meaning = "shape of that edge: straight, round, basket, pointed, ogee, gabled or a program"});
+    const std::string across = level ? "of the height" : "of the width",
+                      along = level ? "of the width" : "of the height";
+    k.parameters.push_back(
+        {.name = name,
+         .type = Type::edge,
+         .words = {"straight"},
+         .meaning = "shape of that edge: straight, round, basket, pointed, ogee, gabled or a program"});
     k.parameters.push_back(number(name + "_size", across, 0, 0, 1, "depth of the strip that the shape runs in"));
     k.parameters.push_back(number(name + "_inward", across, 0, 0, 1, "how far that edge moves in"));
-    k.parameters.push_back(number(name + (level ? "_left" : "_below"), along, 0, 0, 1, "what it is shortened by there"));
+    k.parameters.push_back(
+        number(name + (level ? "_left" : "_below"), along, 0, 0, 1, "what it is shortened by there"));
     k.parameters.push_back(number(name + (level ? "_right" : "_above"), along, 0, 0, 1, "the same at its other end"));
   }
-  add(k.parameters, {number("frame", "m", 0.06, 0.03, 0.15, "width of the frame"),
-                     whole("bars", 0, 0, 8, "level glazing bars"), whole("upright_bars", 0, 0, 8, "upright ones"),
-                     number("bar", "m", 0.03, 0.015, 0.10, "width of glazing bars")});
+  add(k.parameters,
+      {number("frame", "m", 0.06, 0.03, 0.15, "width of the frame"), whole("bars", 0, 0, 8, "level glazing bars"),
+       whole("upright_bars", 0, 0, 8, "upright ones"), number("bar", "m", 0.03, 0.015, 0.10, "width of glazing bars")});
   add(k.parameters, surround("none", 0.14));
   add(k.parameters, sill("none"));
   k.parameters.push_back(detail());

@@ -109,8 +109,8 @@ tl::expected<Values, std::string> Values::check(const ElementKind& kind, std::sp
             if (s.name == *text) shape = &s;
           }
           if (!shape)
-            return tl::unexpected(fmt::format("{}: there is no shape of an edge \"{}\"{}", kind.name, *text,
-                                              suggestion(*text, known)));
+            return tl::unexpected(
+                fmt::format("{}: there is no shape of an edge \"{}\"{}", kind.name, *text, suggestion(*text, known)));
           program = shape->program;
         }
         if (program.empty()) break;
@@ -161,7 +161,7 @@ std::optional<Profile> Values::edge(std::string_view name) const {
   const ProfileProgram& program = programs_[index(name)];
   if (program.commands.empty()) return std::nullopt;
   constexpr int kEdgeSteps[] = {2, 4, 6};  // straight pieces of a quarter circle by detail
-  return trace(program, kEdgeSteps[detail()]);
+  return trace(program, kEdgeSteps[this->detail()]);
 }
 
 Profile Values::profile(std::string_view name) const { return traced(programs_[index(name)]); }

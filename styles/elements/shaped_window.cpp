@@ -120,7 +120,8 @@ Made make_shaped_window(const Request& r, Element& element) {
     const double y = box.least.y + box.height() * k / (level + 1);
     bar({box.least.x - 1, y - half}, {box.most.x + 1, y + half}, front - 2 * kApart, false);
   }
-  const bool whole_foot = (*outline)[0] == Point2{-model::snap(r.width / 2), 0} && (*outline)[1] == Point2{model::snap(r.width / 2), 0};
+  const bool whole_foot =
+      (*outline)[0] == Point2{-model::snap(r.width / 2), 0} && (*outline)[1] == Point2{model::snap(r.width / 2), 0};
   if (!v.is("sill", "none") && !whole_foot)
     return tl::unexpected<std::string>("a sill wants a straight lower edge as wide as the opening");
   if (!v.is("surround", "none") && !takes_band(*outline, v.number("surround_width") + 2 * kApart))

@@ -32,7 +32,7 @@ std::optional<model::Solid> pipe(Point2 foot, Point2 along, double top, double b
   constexpr double kLeastPipe = 0.5;  // m: lower eaves have none
   if (top - bottom < kLeastPipe) return std::nullopt;
   const Point2 outward{along.y, -along.x}, side = along * (o.pipe / 2), near = foot + outward * o.pipe_off,
-               far = near + outward * o.pipe;
+                                           far = near + outward * o.pipe;
   const Point2 plan[] = {near - side, near + side, far + side, far - side};
   const auto at = [&](std::size_t i, double z) { return Point3{plan[i % 4].x, plan[i % 4].y, z}; };
   model::Face looks;
@@ -82,7 +82,8 @@ BuiltElements gutters(const BuiltOverhangs& before, double bottom, const MayCome
     const Point2 foot{end.x - outward.x * l.reach + l.along.x * way, end.y - outward.y * l.reach + l.along.y * way};
     if (is_near_another(foot) || is_under_another(l, foot, outward) || !may(foot, l.along, o.pipe / 2)) return false;
     // Up to the soffit, which rises towards the wall.
-    const double soffit = std::min(l.from.z, l.to.z) - o.board + std::max(l.reach - o.pipe_off - o.pipe, 0.0) * l.steepness;
+    const double soffit =
+        std::min(l.from.z, l.to.z) - o.board + std::max(l.reach - o.pipe_off - o.pipe, 0.0) * l.steepness;
     constexpr double kUnderSoffit = 0.01;  // m
     auto solid = pipe(foot, l.along, soffit - kUnderSoffit, bottom, o);
     if (!solid) return false;
@@ -94,11 +95,20 @@ BuiltElements gutters(const BuiltOverhangs& before, double bottom, const MayCome
   };
   for (std::size_t first = 0; may && first < lines.size();) {
     std::size_t last = first;
-    double run = 0;
     while (last + 1 < lines.size() && lines[last].joined_after) ++last;
-    for (std::size_t i = first; i <= last; ++i) run += distance(lines[i].from.xy(), lines[i].to.xy());
-    bool drained = !lost[last] && try_pipe(lines[last], true);
-    if (!drained || run > o.most_to_pipe) drained = (!lost[first] && try_pipe(lines[first], false)) || drained;
+    // A pipe wherever so much gutter has come together, at the ends of walls; else wherever there is room for one.
+    bool drained = false;
+    double run = 0;
+    for (std::size_t i = first; i <= last; ++i) {
+      run += distance(lines[i].from.xy(), lines[i].to.xy());
+      if (lost[i] || (i < last && run < o.most_to_pipe) || !try_pipe(lines[i], true)) continue;
+      drained = true;
+      run = 0;
+    }
+    for (std::size_t i = first; i <= last; ++i) {
+      const bool long_one = distance(lines[i].from.xy(), lines[i].to.xy()) > o.most_to_pipe;
+      if (!lost[i] && (!drained || long_one)) drained = try_pipe(lines[i], false) || drained;
+    }
     first = last + 1;
   }
   return out;

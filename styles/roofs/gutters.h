@@ -12,16 +12,16 @@ namespace blockrand::roofs {
 
 /// Measures, m.
 struct GutterOptions {
-  double width = 0.12;        ///< of a half-round gutter of nominal size 250 to 333 (DIN EN 612:2005): 0.105 to 0.153
-  double depth = 0.08;        ///< at the board
-  double below_roof = 0.02;   ///< its rim under the upper side of the roof's edge
-  double board = 0.18;        ///< height of the eaves' board (OverhangOptions::thickness): pipes end below the soffit
-  double pipe = 0.09;         ///< side of a downpipe: nominal 80 to 100 (DIN EN 612:2005)
-  double pipe_off = 0.04;     ///< between wall and downpipe: clips, and courses of the wall
-  double least_run = 1.5;     ///< shorter gutters have no pipe of their own
-  double from_end = 0.20;     ///< middle of the pipe from the end of the wall
-  double most_to_pipe = 15;   ///< of gutter that one pipe drains: longer ones have one at each end (DIN 1986-100 allows
-                              ///< about 150 m² of roof to a pipe of 100)
+  double width = 0.12;       ///< of a half-round gutter of nominal size 250 to 333 (DIN EN 612:2005): 0.105 to 0.153
+  double depth = 0.08;       ///< at the board
+  double below_roof = 0.02;  ///< its rim under the upper side of the roof's edge
+  double board = 0.18;       ///< height of the eaves' board (OverhangOptions::thickness): pipes end below the soffit
+  double pipe = 0.09;        ///< side of a downpipe: nominal 80 to 100 (DIN EN 612:2005)
+  double pipe_off = 0.04;    ///< between wall and downpipe: clips, and courses of the wall
+  double least_run = 1.5;    ///< shorter gutters have no pipe of their own
+  double from_end = 0.20;    ///< middle of the pipe from the end of the wall
+  double most_to_pipe = 15;  ///< of gutter that comes together before a pipe (DIN 1986-100: about 150 m² of roof to a
+                             ///< pipe of 100)
 };
 
 /// Says whether a pipe may come down a wall.

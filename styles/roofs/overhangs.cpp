@@ -178,13 +178,24 @@ class Overhangs {
       constexpr double kLeastFall = 0.02;
       const double falls = -dot(s.top.gradient, s.top.outward());
       bool is_in = falls > kLeastFall && s.reach > 0 && s.kind == RoofElementKind::eaves && !in_the_way.contains(i) &&
-                         w.reach <= rooms_[s.top.edge];
+                   w.reach <= rooms_[s.top.edge];
       is_in = is_in && clear_of_all({s.start, w.start, w.end, s.end});
-      if (!out.empty() && before_is_in) out.back().joined_after &= is_in;
+      if (!out.empty() && before_is_in) {
+        // Slopes of two pitches come down to two heights.
+        const double here = height(s, s.top.from, s.start);
+        out.back().joined_after &= is_in && std::fabs(out.back().to.z - here) < kSameHeight;
+      }
       before_is_in = is_in;
       if (!is_in) continue;
       const double a = height(s, s.top.from, s.start), b = height(s, s.top.to, s.end);
-      out.push_back({{s.start.x, s.start.y, a}, {s.end.x, s.end.y, b}, w.start, w.end, s.top.along, s.reach, falls, i,
+      out.push_back({{s.start.x, s.start.y, a},
+                     {s.end.x, s.end.y, b},
+                     w.start,
+                     w.end,
+                     s.top.along,
+                     s.reach,
+                     falls,
+                     i,
                      s.joined_after && w.joined_after && s.after == i + 1});
     }
     return out;

@@ -20,7 +20,8 @@ struct OverhangOptions {
   double thickness = 0.18;  ///< m, upright: the height of the fascia board, rafters and tiles above it [P].
   double most_drop = 0.45;  ///< m. Steep slopes (mansards) go out no farther than they come down by this [P].
   double least = 0.05;      ///< m. What is shorter than that is none: a row of tiles.
-  double before_eaves = 0;  ///< m, horizontal: room that gutters take before eaves; 0: BuiltOverhangs::eaves stays empty
+  double before_eaves =
+      0;  ///< m, horizontal: room that gutters take before eaves; 0: BuiltOverhangs::eaves stays empty
   double longest_mitre =
       3;  ///< times the overhang, from the corner: both ends are cut square beyond (corners below 39 degrees).
 };
@@ -41,20 +42,21 @@ struct OverhangCorner {
 
 /// An upper edge of an overhang over eaves: what a gutter hangs along.
 struct EavesLine {
-  model::Point3 from, to;         ///< m, of the upper side, in the ring's direction; both level but for rounding
+  model::Point3 from, to;          ///< m, of the upper side, in the ring's direction; both level but for rounding
   model::Point2 out_from, out_to;  ///< of what lies OverhangOptions::before_eaves farther out
-  model::Point2 along;            ///< unit vector
-  double reach = 0;               ///< m from the wall
+  model::Point2 along;             ///< unit vector
+  double reach = 0;                ///< m from the wall
   double steepness = 0;            ///< m up for each m towards the wall
-  std::size_t strip = 0;          ///< into BuiltOverhangs::strips: its own
-  bool joined_after = false;      ///< the next one begins where this one ends
+  std::size_t strip = 0;           ///< into BuiltOverhangs::strips: its own
+  bool joined_after = false;       ///< the next one begins where this one ends
 };
 
 struct BuiltOverhangs {
   BuiltElements elements;  ///< kinds eaves and verge; `asked` counts plan edges with room that are no party walls
   std::vector<OverhangCorner> corners;
   std::vector<std::vector<model::Point2>> strips;  ///< the plan of every overhang, where `eaves` are asked for
-  std::vector<EavesLine> eaves;  ///< those that water comes down to, with OverhangOptions::before_eaves free before them, ring by ring
+  std::vector<EavesLine>
+      eaves;  ///< those that water comes down to, with OverhangOptions::before_eaves free before them, ring by ring
 };
 
 /// Continues the roof's surfaces in their planes beyond the walls: eaves where the upper end of a wall is level, verges

@@ -46,8 +46,8 @@ struct RoofRequest {
   std::optional<model::Point2> down;  ///< unit vector down the slope (roof:direction)
   bool across = false;                ///< roof:orientation=across: the axis is the shorter side
   double attic = 0;                   ///< m, mansard and gambrel: height of the break above the eaves; 0: by the table
-  model::SidePitches side_pitches;  ///< of shapes with one pitch on all sides; others do not read it
-  double other_sides_pitch = 0;     ///< degrees, of the sides without one of their own; wanted beside `side_pitches`
+  model::SidePitches side_pitches;    ///< of shapes with one pitch on all sides; others do not read it
+  double other_sides_pitch = 0;       ///< degrees, of the sides without one of their own; wanted beside `side_pitches`
   double coarseness = 1;              ///< geometry::roof_surfaces(); for a second try
   /// One per plan edge, ring by ring; empty: all open. Party walls turn ridges and make lean-to roofs (roof_sides.h).
   std::vector<model::RoofEdge> edges;

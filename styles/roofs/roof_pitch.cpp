@@ -49,7 +49,8 @@ double way_down(const Polygon& plan, const RoofRequest& request, const model::Pr
 bool needs_skeleton(const Polygon& plan, const RoofRequest& request, const model::EdgeRoof& roof) {
   const bool in_row =
       std::find(request.edges.begin(), request.edges.end(), model::RoofEdge::party_wall) != request.edges.end();
-  return in_row || (request.side_pitches.any() && takes_side_pitches(request.shape)) || roof.eaves == EavesProfile::berlin || !is_one_wing(plan) ||
+  return in_row || (request.side_pitches.any() && takes_side_pitches(request.shape)) ||
+         roof.eaves == EavesProfile::berlin || !is_one_wing(plan) ||
          (request.along_eaves_lines && eaves_plan(plan, request.edges));
 }
 

@@ -119,7 +119,11 @@ static_assert(ends_fit_eaves());
 class Builder {
  public:
   Builder(const Polygon& plan, const RoofRequest& request, const EdgeRoof& form)
-      : plan_(plan), request_(request), form_(form), plan_sides_(plan_sides(plan)), sides_(roof_sides(plan, request, ends_apart())) {}
+      : plan_(plan),
+        request_(request),
+        form_(form),
+        plan_sides_(plan_sides(plan)),
+        sides_(roof_sides(plan, request, ends_apart())) {}
 
   bool leans() const { return sides_.leans; }
 

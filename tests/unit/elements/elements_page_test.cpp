@@ -53,11 +53,10 @@ std::string table(const ElementKind& kind) {
       base::shortest(kind.width.usual), kind.height.measures, base::shortest(kind.height.least),
       base::shortest(kind.height.most), base::shortest(kind.height.usual));
   for (const ParameterInfo& p : kind.parameters) {
-    const std::string initial = p.type == ParameterInfo::Type::word
-                                    ? "`" + p.words[static_cast<std::size_t>(p.initial)] + "`"
-                                : p.type == ParameterInfo::Type::profile || p.type == ParameterInfo::Type::edge
-                                    ? "`" + p.words[0] + "`"
-                                    : base::shortest(p.initial);
+    const std::string initial =
+        p.type == ParameterInfo::Type::word ? "`" + p.words[static_cast<std::size_t>(p.initial)] + "`"
+        : p.type == ParameterInfo::Type::profile || p.type == ParameterInfo::Type::edge ? "`" + p.words[0] + "`"
+                                                                                        : base::shortest(p.initial);
     out += fmt::format("| `{}` | {} | {} | {} | {} |\n", p.name, p.unit, range(p), initial, p.meaning);
   }
   out += "\nTriangles at detail 0, 1, 2:";

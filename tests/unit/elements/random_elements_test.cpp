@@ -7,8 +7,8 @@
 
 #include "pipeline/base/random.h"
 #include "styles/elements/make_element.h"
-#include "styles/elements/opening_edges.h"
 #include "styles/elements/mesh_builder.h"
+#include "styles/elements/opening_edges.h"
 #include "tests/unit/elements/element_checks.h"
 #include "tests/unit/elements/mesh_measures.h"
 

@@ -55,7 +55,8 @@ TEST(ShapedWindow, AnOgeeIsHollowBelowItsTip) {
   EXPECT_THAT(outline, testing::Contains(Point2{0, 3}));
   EXPECT_THAT(outline, testing::Contains(Point2{model::snap(-0.6), model::snap(1.8)}));
   EXPECT_GE(reflex_corners(outline), 4) << "an ogee bends both ways";
-  for (const Point2 p : outline) EXPECT_THAT(outline, testing::Contains(Point2{-p.x, p.y})) << "it is its own mirror image";
+  for (const Point2 p : outline)
+    EXPECT_THAT(outline, testing::Contains(Point2{-p.x, p.y})) << "it is its own mirror image";
   // Glass all over but for the frame of 0.06 m.
   const double opening = signed_area(outline), glass = area_of(window, Part::glass);
   EXPECT_LT(glass, opening);
@@ -81,13 +82,15 @@ TEST(ShapedWindow, EdgesMoveAndCornersAreCut) {
   EXPECT_EQ(box.least, (Point2{-0.75, 0}));
   EXPECT_EQ(box.most, (Point2{0.875, 3}));
   // Edges that stop before the corner cut it off.
-  const Element cut = made(2, 4, {{"top_left", 0.25}, {"top_right", 0.25}, {"left_above", 0.25}, {"right_above", 0.25}});
+  const Element cut =
+      made(2, 4, {{"top_left", 0.25}, {"top_right", 0.25}, {"left_above", 0.25}, {"right_above", 0.25}});
   EXPECT_EQ(cut.opening.outline, (Outline{{-1, 0}, {1, 0}, {1, 3}, {0.5, 4}, {-0.5, 4}, {-1, 3}}));
 }
 
 TEST(ShapedWindow, BandsAndSillsGoRoundIt) {
   for (const char* surround : {"plain", "moulded", "brick"}) {
-    const Element window = made(1.2, 3, {{"top", "basket"}, {"top_size", 0.2}, {"surround", surround}, {"sill", "plain"}});
+    const Element window =
+        made(1.2, 3, {{"top", "basket"}, {"top_size", 0.2}, {"surround", surround}, {"sill", "plain"}});
     EXPECT_GT(window.mesh.faces.size(), made(1.2, 3, {{"top", "basket"}, {"top_size", 0.2}}).mesh.faces.size());
     EXPECT_EQ(checks::open_place(window), "") << surround;
   }
@@ -99,7 +102,12 @@ TEST(ShapedWindow, SaysWhatCannotBe) {
   EXPECT_THAT(error({{"outline", "circular"}, {"sill", "plain"}}), HasSubstr("a sill wants a straight lower edge"));
   EXPECT_THAT(error({{"top", "Modifications { arc, abs, 0, 180; }"}, {"top_size", 0.3}}), HasSubstr("\"top\""));
   EXPECT_THAT(error({{"left_inward", 0.5}, {"right_inward", 0.5}}), HasSubstr("nothing is left"));
-  EXPECT_THAT(error({{"bars", 8.0}, {"top", "gabled"}, {"top_size", 0.9}, {"bar", 0.1}, {"bottom_inward", 0.7}, {"top_inward", 0.05}}),
+  EXPECT_THAT(error({{"bars", 8.0},
+                     {"top", "gabled"},
+                     {"top_size", 0.9},
+                     {"bar", 0.1},
+                     {"bottom_inward", 0.7},
+                     {"top_inward", 0.05}}),
               HasSubstr("no"));
 }
 

@@ -41,7 +41,7 @@ inline std::size_t pick(double unit, std::initializer_list<double> weights) {
 
 /// Draws a gable for a roof that is known. Empty where none may stand before it.
 inline std::optional<GableOptions> draw_gable(std::uint64_t seed, std::uint64_t object, model::RoofShape roof,
-                                       const GableWeights& weights = {}) {
+                                              const GableWeights& weights = {}) {
   const auto unit = [&](std::string_view choice) { return base::random_unit(seed, object, choice); };
   GableOptions out;
   if (may_stand_before(GableForm::attic, roof)) {
@@ -63,7 +63,8 @@ inline DrawnGable draw_gable_house(std::uint64_t seed, std::uint64_t object, con
   if (unit("gable or attic") < weights.attic) {
     out.roof = model::RoofShape::hipped;
   } else {
-    constexpr model::RoofShape shapes[] = {model::RoofShape::gabled, model::RoofShape::half_hipped, model::RoofShape::mansard};
+    constexpr model::RoofShape shapes[] = {model::RoofShape::gabled, model::RoofShape::half_hipped,
+                                           model::RoofShape::mansard};
     out.roof = shapes[pick(unit("roof behind a gable"), {weights.gabled, weights.half_hipped, weights.mansard})];
   }
   out.gable = *draw_gable(seed, object, out.roof, weights);

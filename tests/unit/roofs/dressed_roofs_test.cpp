@@ -5,10 +5,10 @@
 #include <fstream>
 
 #include "pipeline/outputs/gltf/glb_writer.h"
+#include "tests/unit/roofs/drawn_gables.h"
 #include "tests/unit/roofs/element_checks.h"
 #include "tests/unit/roofs/roof_checks.h"
 #include "tests/unit/roofs/roof_with_edges.h"
-#include "tests/unit/roofs/drawn_gables.h"
 
 namespace blockrand::roof_checks {
 namespace {

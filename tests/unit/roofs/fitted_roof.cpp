@@ -1,8 +1,9 @@
 #include "tests/unit/roofs/fitted_roof.h"
-#include "tests/unit/roofs/placed_dormer.h"
 
 #include <array>
 #include <limits>
+
+#include "tests/unit/roofs/placed_dormer.h"
 
 namespace blockrand::roof_checks {
 

@@ -7,9 +7,9 @@
 #include <map>
 #include <set>
 
+#include "tests/unit/roofs/drawn_gables.h"
 #include "tests/unit/roofs/element_checks.h"
 #include "tests/unit/roofs/roof_checks.h"
-#include "tests/unit/roofs/drawn_gables.h"
 
 namespace blockrand::roofs {
 namespace {

@@ -41,8 +41,9 @@ struct Dressed {
   }
 };
 
-Dressed dress(const Polygon& plan, const Roof& roof, const std::vector<OverhangRoom>& rooms = {},
-              const MayComeDown& may = [](Point2, Point2, double) { return true; }) {
+Dressed dress(
+    const Polygon& plan, const Roof& roof, const std::vector<OverhangRoom>& rooms = {},
+    const MayComeDown& may = [](Point2, Point2, double) { return true; }) {
   OverhangOptions options;
   options.before_eaves = kUsual.width;
   BuiltOverhangs beyond = overhangs(plan, roof, rooms, options);
@@ -124,8 +125,8 @@ TEST(Gutters, OnAnyPlanEveryBodyIsSoundAndApart) {
   int gutter_count = 0, pipes = 0, asked = 0, refused = 0;
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     Random random(seed);
-    const Polygon plan = roof_checks::moved(roof_checks::random_plan(random), 360 * random.unit(),
-                                            roof_checks::kPlaces[random.next(3)]);
+    const Polygon plan =
+        roof_checks::moved(roof_checks::random_plan(random), 360 * random.unit(), roof_checks::kPlaces[random.next(3)]);
     RoofRequest request;
     request.shape = random.unit() < 0.5 ? RoofShape::gabled : RoofShape::hipped;
     request.measures = {kEaves, 3};

@@ -25,9 +25,14 @@ TEST(SidePitches, AreReadAndWritten) {
   const auto read = model::parse_side_pitches(" street 60,yard 30 ; north 45");
   ASSERT_TRUE(read.has_value());
   EXPECT_EQ(model::text(*read), "street 60, yard 30, north 45");
-  for (const auto& [text, wrong] : {std::pair{"", "begins with no side"}, {"front 40", "begins with no side"},
-                                    {"street", "whole number"}, {"street 3", "5 to 80"}, {"street 81", "5 to 80"},
-                                    {"street 40.5", "whole number"}, {"street 40, street 50", "twice"}, {"street 40,", "no side"}}) {
+  for (const auto& [text, wrong] : {std::pair{"", "begins with no side"},
+                                    {"front 40", "begins with no side"},
+                                    {"street", "whole number"},
+                                    {"street 3", "5 to 80"},
+                                    {"street 81", "5 to 80"},
+                                    {"street 40.5", "whole number"},
+                                    {"street 40, street 50", "twice"},
+                                    {"street 40,", "no side"}}) {
     const auto none = model::parse_side_pitches(text);
     ASSERT_FALSE(none.has_value()) << text;
     EXPECT_THAT(none.error(), HasSubstr(wrong)) << text;
@@ -96,7 +101,8 @@ TEST(SidePitches, MakeValidRoofsOnAnyPlan) {
     request.shape = random.unit() < 0.5 ? RoofShape::gabled : RoofShape::hipped;
     request.measures = {40, 5};
     request.other_sides_pitch = 40;
-    for (std::uint8_t& d : request.side_pitches.degrees) d = static_cast<std::uint8_t>(random.unit() < 0.5 ? 0 : 15 + random.next(60));
+    for (std::uint8_t& d : request.side_pitches.degrees)
+      d = static_cast<std::uint8_t>(random.unit() < 0.5 ? 0 : 15 + random.next(60));
     bool valid = false;  // with the tries of a build
     for (const double coarseness : kCoarseness) {
       request.coarseness = coarseness;

@@ -13,10 +13,10 @@
 
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/outputs/gltf/glb_writer.h"
+#include "tests/unit/roofs/drawn_gables.h"
 #include "tests/unit/roofs/element_checks.h"
 #include "tests/unit/roofs/roof_with_edges.h"
 #include "tests/unit/run/built_town.h"
-#include "tests/unit/roofs/drawn_gables.h"
 
 namespace blockrand::run::test {
 namespace {
