@@ -97,6 +97,7 @@ class Map:
                 self.delete(b)
             elif what == 'retag':
                 tags = dict(b.tags, **rng.choice([{'building:levels': str(rng.randrange(1, 9))}, {'roof:shape': rng.choice(['flat', 'gabled', 'hipped'])},
+                                                  {'roof:shape': 'hipped', 'blockrand:roof_pitches': rng.choice(['street 60, yard 30', 'north 25', 'front 9'])},
                                                   {'start_date': str(rng.randrange(1850, 2020))}, {'heritage': '4'}, {'building': 'garage'}, {'height': 'tall'}]))
                 self.edit(b, tags=tags)
             elif what == 'split' and len(corners) >= 4:

@@ -150,6 +150,20 @@ preset = "steep_north"
             with open(os.path.join(out, 'report.json'), encoding='utf-8') as f:
                 self.assertIn(code, f.read(), name)
 
+    def test_windows_of_gables_take_outlines(self):
+        wide = 'dormer_share = 1, dormer_kind = "gabled", cross_gable_share = 0, roof_window_outline = "{}"'
+        plain = self.with_parameters('straight', wide.format('straight'))
+        count = self.counts(plain)['windows']
+        for outline, corners in (('circular', 16), ('ogee', 12), ('round', 9)):
+            out = self.with_parameters(outline, wide.format(outline))
+            self.assertGreaterEqual(self.counts(out)['windows'], 0.99 * count, outline)
+            text = self.gml(out)
+            rings = dict(re.findall(r'<Polygon gml:id="([^"]+)">.*?posList[^>]*>([^<]*)<', text, re.S))
+            panes = [points(rings[ref]) for ref in re.findall(r'<bldg:Window .*?href="#([^"]+)".*?</bldg:Window>', text, re.S)]
+            self.assertGreater(sum(len(p) >= corners for p in panes), 20, outline)
+            checked = blockrand('validate', out)
+            self.assertEqual(checked.code, 0, checked)
+
     def test_windows_take_outlines(self):
         self.place('outlines.cga', '''version "2025.1"
 @StartRule
