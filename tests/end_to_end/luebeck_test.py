@@ -275,6 +275,60 @@ class Luebeck(BuildTest):
         self.assertEqual([len(s) for s in shapes], [64, 64])
         self.assertEqual(shapes[0] & shapes[1], set())
 
+    def test_rule_files_tell_line_and_reason(self):
+        """H01 is replaced by CGA: what his two sections hold is read from one rule file, and errors name line and reason."""
+        rules = 'version "2025.1"\nattr width = rand(1.0, 1.4)\nconst half = width / 2\n@StartRule\nLot --> extrude(3) Mass\nMass --> comp(f){ side : Wall. | top : NIL }\n'
+        sound = blockrand('grammar', 'check', self.place('sound.cga', rules))
+        self.assertEqual(sound.code, 0, sound)
+        for line, before, after, reason in ((2, 'rand(1.0, 1.4)', 'rnad(1.0, 1.4)', 'rand'), (5, 'Lot -->', 'Lot ->', 'expected'),
+                                            (6, 'comp(f){ side', 'comp(f){ sid', 'side')):
+            run = blockrand('grammar', 'check', self.place('broken.cga', rules.replace(before, after)))
+            self.assertNotEqual(run.code, 0, after)
+            text = run.out + run.err
+            self.assertRegex(text, rf'broken\.cga:{line}:\d+', text)
+            self.assertIn(reason, text)
+
+    def test_each_lot_has_its_house(self):
+        """H34 is replaced by the extract: over 60 houses, each at the place and in the direction that its way says."""
+        out, houses = self.quarter(1)
+        with open(self.path('quarter1.osm'), encoding='utf-8') as f:
+            text = f.read()
+        nodes = {re.search(r' id="(\d+)"', n).group(1): tuple(float(re.search(rf' {k}="([^"]+)"', n).group(1)) for k in ('lon', 'lat'))
+                 for n in re.findall(r'<node [^>]*>', text)}
+        frame = {h.id: h for h in houses}
+        metres = []
+        for way, body in re.findall(r'<way id="(\d+)"[^>]*>(.*?)</way>', text, re.S):
+            if f'w{way}' not in frame:
+                continue
+            ring = [nodes[n] for n in re.findall(r'<nd ref="(\d+)"', body)][:-1]
+            # Rotated as its way: each wall of the lot is one of the house's, to a degree.
+            east = math.cos(math.radians(ring[0][1]))
+            angles = [math.degrees(math.atan2(b[1] - a[1], (b[0] - a[0]) * east)) % 180 for a, b in zip(ring, ring[1:] + ring[:1])]
+            own = [math.degrees(math.atan2(q[1] - p[1], q[0] - p[0])) % 180 for points in frame[f'w{way}'].wall_points.values()
+                   for p in points for q in points if math.dist(p[:2], q[:2]) > 2]
+            for angle in angles:
+                self.assertLess(min(abs((angle - o + 90) % 180 - 90) for o in own), 2, way)
+            walls = [p for points in frame[f'w{way}'].wall_points.values() for p in points]
+            metres.append((ring, ((min(p[0] for p in walls) + max(p[0] for p in walls)) / 2, (min(p[1] for p in walls) + max(p[1] for p in walls)) / 2)))
+        self.assertEqual(len(metres), 64)
+        # Degrees to metres by the two houses that lie farthest apart; all others agree with them to centimetres.
+        middle = [tuple((min(p[i] for p in ring) + max(p[i] for p in ring)) / 2 for i in (0, 1)) for ring, _ in metres]
+        east = math.cos(math.radians(middle[0][1])) * 111320
+        for (ring, place), m in zip(metres, middle):
+            dx, dy = (m[0] - middle[0][0]) * east, (m[1] - middle[0][1]) * 111300
+            self.assertLess(math.hypot(place[0] - metres[0][1][0] - dx, place[1] - metres[0][1][1] - dy), 4, 'to the convergence of the grid')
+
+    def test_a_change_of_rules_changes_what_it_names(self):
+        """H38 is replaced by files: a rule and the map are edited, and the quarter is generated again."""
+        _, before = self.quarter(1)
+        orders = self.place('one.toml', '[w5]\nstoreys = 2\nroof_shape = "hipped"\n')
+        _, after = self.quarter(1, '--overrides', orders)
+        shapes = [{h.id: h.shape() for h in houses} for houses in (before, after)]
+        changed = [i for i in shapes[0] if shapes[0][i] != shapes[1][i]]
+        self.assertIn('w5', changed)
+        self.assertLessEqual(len(changed), 3, changed)  # and neighbours whose wall it stands against
+        self.assertEqual(next(h for h in after if h.id == 'w5').attributes['built_roof'], 'hipped')
+
     def test_orders_beat_what_presets_state(self):
         """A preset of a rule set's own states measures; an override comes before them."""
         rules = self.place('own.toml', '''
