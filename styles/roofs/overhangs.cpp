@@ -78,7 +78,7 @@ class Overhangs {
         const OverhangRoom room = rooms.empty() ? OverhangRoom{} : rooms[s.top.edge];
         if (room.edge != RoofEdge::party_wall && room.room > 0) {
           s.asked = s.kind == RoofElementKind::verge ? options.verge : options.eaves;
-          const double steepness = -dot(s.top.gradient, s.top.outward());
+          const double steepness = std::fabs(dot(s.top.gradient, s.top.outward()));
           s.reach = std::min(s.asked, room.room);
           if (s.reach * steepness > options.most_drop) s.reach = options.most_drop / steepness;
           if (s.top.surface < 0 || s.reach < options.least) s.reach = 0;

@@ -244,8 +244,7 @@ TEST(DetailGlb, ElementsAreStoredOnceAndLeadToTheirBuilding) {
     }
   ASSERT_GT(wanted, 100u);
   EXPECT_EQ(glb.placements, wanted);
-  EXPECT_EQ(glb.elements, 4u)
-      << "window and door, a reveal and a lamp; what is rare is not worth a draw";
+  EXPECT_EQ(glb.elements, 4u) << "window and door, a reveal and a lamp; what is rare is not worth a draw";
   const Scene scene(glb.bytes);
   EXPECT_GE(scene.places, wanted) << "each element in pieces";
   EXPECT_EQ(scene.triangles.size(), glb.triangles);
