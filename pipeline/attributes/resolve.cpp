@@ -307,6 +307,10 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
       tell(part.osm, std::move(r.against_terrain));
       part.canopy = part_use == "roof" || (own_tags && part_use == "yes" && use == "roof");
     }
+    const auto has_order = [&](const BuildingPart& part) { return part.mapped.side_pitches.any(); };
+    if (building.mapped.side_pitches.any() && !std::ranges::any_of(building.parts, has_order))
+      conflicts.push_back({building.osm, model::IssueCode::side_pitch_unread,
+                           model::text(building.mapped.side_pitches) + ": its parts have the roofs"});
     region.report.append({std::move(conflicts)});
     if (one_body) {
       building.attributes = building.parts[0].attributes;

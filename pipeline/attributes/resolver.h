@@ -123,9 +123,9 @@ struct Resolver {
   /// A monument, a garage, a tank: houses around it say nothing of it.
   bool is_non_house() const { return building.style_known && building.style.non_house; }
 
-  /// What is ordered for single sides of the roof: by the object's tags, else by a preset.
+  /// What is ordered for single sides of the roof: by the object's tags, else by a preset where no tag says the pitch.
   const model::SidePitches& side_pitches() const {
-    return own.side_pitches.any() ? own.side_pitches : usual.side_pitches;
+    return own.side_pitches.any() || own.roof_angle ? own.side_pitches : usual.side_pitches;
   }
   /// Degrees, of the sides of which nothing is ordered.
   double other_sides_pitch(model::RoofShape shape) const;

@@ -196,7 +196,13 @@ void Resolver::derived(Attributes& a) {
   request.side_pitches = side_pitches();
   request.other_sides_pitch = other_sides_pitch(a.roof_shape.value);
   if (request.side_pitches.any() && roofs::takes_side_pitches(a.roof_shape.value)) {
-    a.roof_pitch = make<double>(request.other_sides_pitch, a.roof_height.source, a.roof_height.confidence,
+    // A height that says otherwise makes all slopes steeper or gentler by one factor.
+    const roofs::MainSlope slope =
+        plan().outer.size() < 3 ? roofs::MainSlope{} : roofs::main_slope(plan(), request, true);
+    const double pitch = slope.run > 0
+                             ? base::atan2(a.roof_height.value * slope.rise, slope.run) / base::kRadiansPerDegree
+                             : request.other_sides_pitch;
+    a.roof_pitch = make<double>(pitch, a.roof_height.source, a.roof_height.confidence,
                                 "of sides without a pitch of their own; ordered: " + model::text(request.side_pitches));
   } else if (const auto angle = useful_roof_angle(own, a.roof_shape.value)) {
     a.roof_pitch = make<double>(*angle, Source::tag, kTagConfidence, "tagged");

@@ -220,9 +220,13 @@ Choice<double> Resolver::usual_height(RoofShape shape, RoofOrientation orientati
   request.other_sides_pitch = other_sides_pitch(shape);
   const roofs::MainSlope slope =
       plan().outer.size() < 3 ? roofs::MainSlope{} : roofs::main_slope(plan(), request, true);
-  if (request.side_pitches.any() && roofs::takes_side_pitches(shape)) {
+  if (request.side_pitches.any() && roofs::takes_side_pitches(shape) && !slope.leans) {
     const double height = slope.run * tangent(request.other_sides_pitch) / slope.rise;
     const bool mapped = own.side_pitches.any();
+    if (!mapped && height > options.max_usual_roof_height)
+      return {options.max_usual_roof_height, measure_source(), measure_confidence(),
+              fmt::format("the highest usual roof, over a run of {:.1f} m", slope.run)};
+    if (!mapped) usual_pitch_asked = request.other_sides_pitch;
     return {height, mapped ? Source::implied : measure_source(), mapped ? kImpliedConfidence : measure_confidence(),
             fmt::format("pitches ordered by side: {}; {:.0f} degrees on the others", model::text(request.side_pitches),
                         request.other_sides_pitch)};
@@ -262,7 +266,8 @@ void Resolver::fit_roof_height(Attributes& a, bool storeys_known, double plinth,
     roof = whole;
     why = "what the height leaves";
   } else {
-    if (useful_roof_angle(own, a.roof_shape.value) || own.side_pitches.any()) {
+    if (useful_roof_angle(own, a.roof_shape.value) ||
+        (own.side_pitches.any() && roofs::takes_side_pitches(a.roof_shape.value))) {
       roof = std::min(wanted, roof_limit(own, a.height.value));
     } else {
       roof = std::min(wanted, 0.6 * whole);

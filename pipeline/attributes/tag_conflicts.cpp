@@ -236,7 +236,7 @@ roofs::RoofRequest tagged_request(const MappedAttributes& tags, RoofShape shape,
   if (tags.roof_direction) request.down = roofs::compass_vector(*tags.roof_direction);
   request.across = tags.roof_orientation == RoofOrientation::across;
   request.side_pitches = tags.side_pitches;
-  request.other_sides_pitch = tags.roof_angle.value_or(0);
+  request.other_sides_pitch = useful_roof_angle(tags, shape).value_or(0);
   return request;
 }
 

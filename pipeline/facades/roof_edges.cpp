@@ -318,13 +318,14 @@ class RoofDresser {
     const roofs::GutterOptions gutter;
     const bool has_gutters = asked.gutters && !small && over.eaves > 0 && has_gutter(looks);
     if (has_gutters) over.before_eaves = gutter.width;
-    const std::vector<double> free =
-        rooms_before(edges, kinds, others, std::max(over.eaves + over.before_eaves, over.verge));
+    const std::vector<double> free = rooms_before(edges, kinds, others, std::max(over.eaves, over.verge));
+    const std::vector<double> for_gutters =
+        has_gutters ? rooms_before(edges, kinds, others, over.eaves + over.before_eaves) : free;
     std::vector<roofs::OverhangRoom> rooms(edges.size());
     for (std::size_t i = 0; i < edges.size(); ++i) {
       double top = 1e300;
       for (const Point3& p : roof.wall_tops[i]) top = std::min(top, p.z);
-      rooms[i] = {kinds[i], level[i] || has_gable[i] || has_cornice(body, edges[i], top) ? 0 : free[i]};
+      rooms[i] = {kinds[i], level[i] || has_gable[i] || has_cornice(body, edges[i], top) ? 0 : free[i], for_gutters[i]};
     }
     roofs::BuiltOverhangs beyond = roofs::overhangs(plan, roof, rooms, over);
     take(std::move(beyond.elements), RoofElementKind::eaves);

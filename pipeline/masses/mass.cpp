@@ -263,9 +263,22 @@ class MassBuilder {
     model::SidePitches missed = part.side_pitches;
     for (std::size_t i = 0; i < model::kPitchedSideCount; ++i)
       if (pitches_met_.degrees[i] != 0) missed.degrees[i] = 0;
+    constexpr double kOtherPitch = 1;  // degrees; by the rounding of heights
+    const double built = part.attributes.roof_pitch.value;
+    if (!missed.any() && part.mapped.side_pitches.any() && std::fabs(built - part.other_sides_pitch) > kOtherPitch)
+      note(part, IssueCode::side_pitch_unread,
+           fmt::format("{}: the height makes {:.0f} degrees of {:.0f}, and all other sides by that factor",
+                       model::text(part.side_pitches), built, part.other_sides_pitch));
     if (missed.any())
       note(part, IssueCode::side_pitch_unread,
            fmt::format("{}, roof built {}", model::text(missed), model::name(part.built_roof)));
+  }
+
+  /// What is left of the edges' kinds where party walls are not heeded: streets and yards, if pitches are ordered for them.
+  static std::vector<model::RoofEdge> without_row(const BuildingPart& part, std::vector<model::RoofEdge> edges) {
+    if (!part.side_pitches.any()) return {};
+    std::replace(edges.begin(), edges.end(), model::RoofEdge::party_wall, model::RoofEdge::open);
+    return edges;
   }
 
   void build_roof_or_relative(BuildingPart& part, const Polygon& plan, const Levels& levels,
@@ -291,7 +304,7 @@ class MassBuilder {
         if (!heeds_row && !row) continue;
         for (const Polygon* p : std::initializer_list<const Polygon*>{&plan, simplified ? &*simplified : nullptr}) {
           if (!p) continue;
-          request.edges = heeds_row ? in_row(*p) : std::vector<model::RoofEdge>{};
+          request.edges = heeds_row ? in_row(*p) : without_row(part, in_row(*p));
           if (!build_roof(part, *p, levels, materials, request)) continue;
           if (p != &plan) note(part, IssueCode::roof_simplified);
           if (!heeds_row) note(part, IssueCode::roof_row_ignored);
@@ -299,7 +312,7 @@ class MassBuilder {
         }
       }
       request.shape = RoofShape::hipped;
-      request.edges.clear();
+      request.edges = without_row(part, in_row(plan));
       if (asked != RoofShape::hipped && build_roof(part, plan, levels, materials, request)) {
         note(part, IssueCode::roof_shape_adapted,
              std::string(model::name(asked)) + " as hipped: its solid is not valid");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "importers/imagery/image_files.h"
 #include "importers/osm/apply_changes.h"
@@ -37,9 +38,20 @@ std::string settings_sha256(const UpdateOptions& options) {
     add(path.lexically_relative(options.build.configs).string()), add(base::sha256_file(path.string()));
   for (const std::string& path : {options.build.overrides, options.region.polygon})
     if (!path.empty() && fs::is_regular_file(path, error)) add(base::sha256_file(path));
-  if (!options.build.districts.empty())  // with what it builds on and the files that its rules name
-    for (const auto& [name, path] : attributes::read_rule_sets(options.build.configs, options.build.districts).files)
-      add(name), add(base::sha256_file(path));
+  if (!options.build.districts
+           .empty()) {  // with what it builds on, the files that its rules name, and rule files beside it
+    const attributes::ReadRuleSets sets = attributes::read_rule_sets(options.build.configs, options.build.districts);
+    for (const auto& [name, path] : sets.files) add(name), add(base::sha256_file(path));
+    std::set<fs::path> beside;
+    for (const districts::Preset& preset : sets.book.presets)
+      if (!preset.declared_in.empty()) beside.insert(fs::absolute(preset.declared_in).parent_path());
+    for (const fs::path& folder : beside) {
+      std::set<fs::path> rules;
+      for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+        if (entry->path().extension() == ".cga") rules.insert(entry->path());
+      for (const fs::path& path : rules) add(path.filename().string()), add(base::sha256_file(path.string()));
+    }
+  }
   std::vector<std::string> rasters;
   if (!options.build.terrain.empty()) rasters.push_back(options.build.terrain);
   for (const importers::imagery::ImageSource& image : options.build.imagery.images) rasters.push_back(image.path);

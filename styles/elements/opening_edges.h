@@ -33,7 +33,7 @@ struct OpeningEdge {
   std::optional<Profile> profile;
 };
 
-/// A shape of an edge by its name, as a program of the profile language; "straight" has none. Null: there is none of that name.
+/// A shape of an edge by its name, as a program of the profile language; "straight" has none.
 struct EdgeShape {
   std::string_view name, program;
 };

@@ -64,23 +64,29 @@ BuiltElements gutters(const BuiltOverhangs& before, double bottom, const MayCome
     constexpr double kBetween = 0.5;  // m
     return std::ranges::any_of(standing, [&](Point2 p) { return squared_distance(p, foot) < kBetween * kBetween; });
   };
-  // Under its own overhang it may stand, under no other.
-  const auto is_under_another = [&](const EavesLine& own, Point2 foot, Point2 outward) {
+  // Under its own overhang it may stand, under no other, and in no wall.
+  const auto is_in_the_way = [&](const EavesLine& own, Point2 foot, Point2 outward) {
     constexpr double kTouch = 0.003;  // m
     const Point2 side = own.along * (o.pipe / 2), out_there = outward * (o.pipe_off + o.pipe);
     const std::vector<Point2> plan{foot - side, foot + out_there - side, foot + out_there + side, foot + side};
     for (std::size_t i = 0; i < before.strips.size(); ++i)
       if (i != own.strip && !before.strips[i].empty() && convex_overlap(plan, before.strips[i], kTouch)) return true;
+    const Point2 off = outward * o.pipe_off;
+    const std::vector<Point2> itself{plan[0] + off, plan[1], plan[2], plan[3] + off};
+    for (const auto& [from, to] : before.walls)
+      if (segment_enters(itself, from, to, kTouch)) return true;
     return false;
   };
   const auto try_pipe = [&](const EavesLine& l, bool at_end) {
     const double length = dot(l.to.xy() - l.from.xy(), l.along);
     if (length < o.least_run) return false;
     const Point2 outward{l.along.y, -l.along.x};
-    const Point2 end = at_end ? l.to.xy() : l.from.xy();
-    const double way = at_end ? -o.from_end - l.reach : o.from_end + l.reach;
-    const Point2 foot{end.x - outward.x * l.reach + l.along.x * way, end.y - outward.y * l.reach + l.along.y * way};
-    if (is_near_another(foot) || is_under_another(l, foot, outward) || !may(foot, l.along, o.pipe / 2)) return false;
+    // Near the end of the wall; in an inner corner clear of the other wall's overhang.
+    const Point2 inwards = at_end ? -l.along : l.along;
+    Point2 foot = (at_end ? l.wall_to : l.wall_from) + inwards * o.from_end;
+    if (is_in_the_way(l, foot, outward)) foot = foot + inwards * (2 * (l.reach + o.width));
+    if (dot(foot - l.wall_from, l.along) < o.pipe || dot(l.wall_to - foot, l.along) < o.pipe) return false;
+    if (is_near_another(foot) || is_in_the_way(l, foot, outward) || !may(foot, l.along, o.pipe / 2)) return false;
     // Up to the soffit, which rises towards the wall.
     const double soffit =
         std::min(l.from.z, l.to.z) - o.board + std::max(l.reach - o.pipe_off - o.pipe, 0.0) * l.steepness;

@@ -17,7 +17,7 @@ struct GutterOptions {
   double below_roof = 0.02;  ///< its rim under the upper side of the roof's edge
   double board = 0.18;       ///< height of the eaves' board (OverhangOptions::thickness): pipes end below the soffit
   double pipe = 0.09;        ///< side of a downpipe: nominal 80 to 100 (DIN EN 612:2005)
-  double pipe_off = 0.04;    ///< between wall and downpipe: clips, and courses of the wall
+  double pipe_off = 0.04;    ///< between wall and downpipe: clips; courses that stand out farther run into the pipe
   double least_run = 1.5;    ///< shorter gutters have no pipe of their own
   double from_end = 0.20;    ///< middle of the pipe from the end of the wall
   double most_to_pipe = 15;  ///< of gutter that comes together before a pipe (DIN 1986-100: about 150 m² of roof to a

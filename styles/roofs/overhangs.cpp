@@ -57,8 +57,8 @@ class Overhangs {
             const OverhangOptions& options)
       : plan_(plan), edges_(plan_edges(plan)), options_(options) {
     const auto tops = top_segments(plan, roof);
-    rooms_.resize(edges_.size(), OverhangRoom{}.room);
-    for (std::size_t i = 0; i < rooms.size() && i < rooms_.size(); ++i) rooms_[i] = rooms[i].room;
+    rooms_.resize(edges_.size(), OverhangRoom{}.gutter_room);
+    for (std::size_t i = 0; i < rooms.size() && i < rooms_.size(); ++i) rooms_[i] = rooms[i].gutter_room;
     std::set<std::uint32_t> gables;
     for (const TopSegment& top : tops)
       if (rises(top)) gables.insert(top.edge);
@@ -127,6 +127,7 @@ class Overhangs {
     }
     if (options_.before_eaves > 0) {
       out.eaves = eaves_lines();
+      for (const PlanEdge& e : edges_) out.walls.emplace_back(e.from, e.to);
       for (const Strip& s : strips_) out.strips.push_back(s.reach > 0 ? s.outline() : std::vector<Point2>());
     }
     for (const Strip& s : strips_) {
@@ -192,6 +193,8 @@ class Overhangs {
                      {s.end.x, s.end.y, b},
                      w.start,
                      w.end,
+                     s.top.from.xy(),
+                     s.top.to.xy(),
                      s.top.along,
                      s.reach,
                      falls,
@@ -339,7 +342,7 @@ class Overhangs {
 
   const model::Polygon& plan_;
   std::vector<PlanEdge> edges_;
-  std::vector<double> rooms_;  ///< m before each plan edge
+  std::vector<double> rooms_;  ///< m before each plan edge, for gutters
   std::vector<Strip> strips_;
   OverhangOptions options_;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "pipeline/model/polygon.h"
@@ -29,7 +30,8 @@ struct OverhangOptions {
 /// What limits the overhang of a plan edge.
 struct OverhangRoom {
   model::RoofEdge edge = model::RoofEdge::open;  ///< party walls have none
-  double room = 1e9;  ///< m to what stands before the wall, as far as the overhang may go; 0: none is asked for
+  double room = 1e9;         ///< m to what stands before the wall, as far as the overhang may go; 0: none is asked for
+  double gutter_room = 1e9;  ///< the same for the overhang with OverhangOptions::before_eaves
 };
 
 /// Where the eaves and verges on both sides of a point of the outline meet in one point: a hip or ridge goes on to
@@ -42,18 +44,20 @@ struct OverhangCorner {
 
 /// An upper edge of an overhang over eaves: what a gutter hangs along.
 struct EavesLine {
-  model::Point3 from, to;          ///< m, of the upper side, in the ring's direction; both level but for rounding
-  model::Point2 out_from, out_to;  ///< of what lies OverhangOptions::before_eaves farther out
-  model::Point2 along;             ///< unit vector
-  double reach = 0;                ///< m from the wall
-  double steepness = 0;            ///< m up for each m towards the wall
-  std::size_t strip = 0;           ///< into BuiltOverhangs::strips: its own
-  bool joined_after = false;       ///< the next one begins where this one ends
+  model::Point3 from, to;            ///< m, of the upper side, in the ring's direction; both level but for rounding
+  model::Point2 out_from, out_to;    ///< of what lies OverhangOptions::before_eaves farther out
+  model::Point2 wall_from, wall_to;  ///< of the wall below
+  model::Point2 along;               ///< unit vector
+  double reach = 0;                  ///< m from the wall
+  double steepness = 0;              ///< m up for each m towards the wall
+  std::size_t strip = 0;             ///< into BuiltOverhangs::strips: its own
+  bool joined_after = false;         ///< the next one begins where this one ends
 };
 
 struct BuiltOverhangs {
   BuiltElements elements;  ///< kinds eaves and verge; `asked` counts plan edges with room that are no party walls
   std::vector<OverhangCorner> corners;
+  std::vector<std::pair<model::Point2, model::Point2>> walls;  ///< all plan edges, where `eaves` are asked for
   std::vector<std::vector<model::Point2>> strips;  ///< the plan of every overhang, where `eaves` are asked for
   std::vector<EavesLine>
       eaves;  ///< those that water comes down to, with OverhangOptions::before_eaves free before them, ring by ring

@@ -169,7 +169,8 @@ class Builder {
   };
   Steeper steeper(std::size_t edge) const {
     const model::SidePitches& ordered = request_.side_pitches;
-    if (!ordered.any() || request_.other_sides_pitch <= 0 || form_.eaves != EavesProfile::one_pitch) return {};
+    if (!ordered.any() || request_.other_sides_pitch <= 0 || form_.eaves != EavesProfile::one_pitch || sides_.leans)
+      return {};
     const Point2 out = plan_sides_[edge].outwards();
     const PitchedSide quarter = std::fabs(out.y) >= std::fabs(out.x)
                                     ? (out.y > 0 ? PitchedSide::north : PitchedSide::south)

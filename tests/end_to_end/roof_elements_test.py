@@ -97,6 +97,10 @@ class RoofElements(BuildTest):
         checked = blockrand('validate', usual)
         self.assertEqual(checked.code, 0, checked)
 
+    def told(self, out, code):
+        report = read_json(out, 'report.json')
+        return sorted({row['id'] for part in ('objects', 'fallbacks', 'notices') for row in report[part] if row.get('code') == code})
+
     def side_pitches(self, out, way):
         """Of the LoD2 roof faces of a building, by where they look: degrees, from the written file."""
         found = re.search(rf'<bldg:Building gml:id="{way}">.*?</bldg:Building>', self.gml(out), re.S).group(0)
@@ -147,8 +151,21 @@ preset = "steep_north"
                                          ('street', 'hipped', 'street 60', 'SIDE_PITCH_UNREAD'), ('front', 'hipped', 'front 60', 'VALUE_UNREADABLE')):
             tag = f'<tag k="blockrand:roof_pitches" v="{value}"/>'
             out = self.build(self.place(name + '.osm', self.HOUSE.format(shape, tag)), name, '--lod', '2', '--formats', 'citygml')
-            with open(os.path.join(out, 'report.json'), encoding='utf-8') as f:
-                self.assertIn(code, f.read(), name)
+            self.assertEqual(self.told(out, code), ['w9'], name)
+        # A height against them is told, and an order for an outline whose parts have the roofs.
+        tag = '<tag k="blockrand:roof_pitches" v="south 60, north 30"/>'
+        out = self.build(self.place('low.osm', self.HOUSE.format('hipped', tag + '<tag k="roof:height" v="1"/>')), 'low', '--lod', '2', '--formats', 'citygml')
+        self.assertEqual(self.told(out, 'SIDE_PITCH_UNREAD'), ['w9'])
+        parts = self.HOUSE.format('hipped', tag).replace('</osm>', '''<way id="10"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="4"/><nd ref="1"/>
+<tag k="building:part" v="yes"/><tag k="building:levels" v="2"/></way></osm>''')
+        out = self.build(self.place('parts.osm', parts), 'parts', '--lod', '2', '--formats', 'citygml')
+        self.assertEqual(self.told(out, 'SIDE_PITCH_UNREAD'), ['w9'])
+        good = self.build(self.place('good.osm', self.HOUSE.format('hipped', tag)), 'good', '--lod', '2', '--formats', 'citygml')
+        self.assertEqual(self.told(good, 'SIDE_PITCH_UNREAD') + self.told(good, 'VALUE_UNREADABLE'), [])
+        # What is tagged beats what a preset states.
+        out = self.build(self.place('angle.osm', self.HOUSE.format('hipped', '<tag k="roof:angle" v="25"/>')), 'angle', '--lod', '2', '--formats', 'citygml',
+                         '--districts', rules)
+        self.assertEqual(self.side_pitches(out, 'w9'), {side: {25} for side in ('north', 'east', 'south', 'west')})
 
     def test_windows_of_gables_take_outlines(self):
         wide = 'dormer_share = 1, dormer_kind = "gabled", cross_gable_share = 0, roof_window_outline = "{}"'

@@ -82,7 +82,8 @@ TEST(Gutters, RunBeforeTheEavesOfAGabledHouse) {
       // Under a soffit that falls from the wall by 0.8 in 1.
       EXPECT_NEAR(most.z, kEaves - kUsual.board - 0.13 * 0.8, 0.02);
       EXPECT_NEAR(most.x - least.x, kUsual.pipe, 0.01);
-      EXPECT_TRUE(std::fabs((least.x + most.x) / 2 - 0.2) < 0.3 || std::fabs((least.x + most.x) / 2 - 19.8) < 0.3);
+      const double middle = (least.x + most.x) / 2;
+      EXPECT_NEAR(std::min(middle, 20 - middle), kUsual.from_end, 0.01);
     }
   }
 }
@@ -103,7 +104,7 @@ TEST(Gutters, GoRoundTheCornersOfAHip) {
 TEST(Gutters, WantRoomAndStayOffPartyWalls) {
   const Roof roof = roof_on(kRectangle, RoofShape::gabled);
   std::vector<OverhangRoom> rooms(4);
-  rooms[0].room = 0.45;  // the eaves fit, a gutter does not
+  rooms[0] = {model::RoofEdge::open, 0.45, 0.45};  // the eaves fit, a gutter does not
   rooms[1].edge = rooms[3].edge = model::RoofEdge::party_wall;
   const Dressed house = dress(kRectangle, roof, rooms);
   EXPECT_EQ(house.count(RoofElementKind::eaves), 2);
