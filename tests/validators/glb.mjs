@@ -116,6 +116,19 @@ export function instance_matrices(glb, node) {
     }));
 }
 
+/** The box of the vertices that a primitive uses: shapes share accessors, whose own bounds are those of all of them. */
+function box_of(glb, primitive) {
+  const p = read_accessor(glb, primitive.attributes.POSITION);
+  const used = primitive.indices === undefined ? [...Array(p.length / 3).keys()] : read_accessor(glb, primitive.indices);
+  const min = [Infinity, Infinity, Infinity], max = [-Infinity, -Infinity, -Infinity];
+  for (const i of used)
+    for (let k = 0; k < 3; ++k) {
+      min[k] = Math.min(min[k], p[3 * i + k]);
+      max[k] = Math.max(max[k], p[3 * i + k]);
+    }
+  return { min, max };
+}
+
 /**
  * Every vertex of the default scene in the tile's frame (glTF's y up turned to z up, as 3D Tiles does); of what is
  * instanced the corners of its box.
@@ -127,7 +140,7 @@ export function positions_z_up(glb) {
     if (!instances.has(node)) instances.set(node, instance_matrices(glb, node));
     const places = instances.get(node);
     if (places) {
-      const { min, max } = glb.json.accessors[primitive.attributes.POSITION];
+      const { min, max } = box_of(glb, primitive);
       for (const place of places)
         for (let corner = 0; corner < 8; ++corner) {
           const [x, y, z] = transform(multiply(matrix, place), min.map((low, k) => ((corner >> k) & 1 ? max[k] : low)));
