@@ -38,8 +38,8 @@ std::string settings_sha256(const UpdateOptions& options) {
     add(path.lexically_relative(options.build.configs).string()), add(base::sha256_file(path.string()));
   for (const std::string& path : {options.build.overrides, options.region.polygon})
     if (!path.empty() && fs::is_regular_file(path, error)) add(base::sha256_file(path));
-  if (!options.build.districts
-           .empty()) {  // with what it builds on, the files that its rules name, and rule files beside it
+  if (!options.build.districts.empty()) {
+    // With what it builds on, the files that its rules name, and rule files beside it.
     const attributes::ReadRuleSets sets = attributes::read_rule_sets(options.build.configs, options.build.districts);
     for (const auto& [name, path] : sets.files) add(name), add(base::sha256_file(path));
     std::set<fs::path> beside;

@@ -223,6 +223,34 @@ class Gates(RegionTest):
         self.update(folder)
         self.assertEqual(read_json(folder, 'log', '000002.changes.json')['settings'], {'removed': ['lod = 2'], 'added': ['lod = 1']})
 
+    def test_an_edited_rule_file_beside_a_rule_set_is_noticed(self):
+        def wall(width):
+            return self.place('beside.cga', f'''version "2025.1"
+@StartRule
+Facade --> case scope.sx < 3 || scope.sy < 4 : Wall. else : split(x){{ ~1 : Wall. | {width} : split(y){{ 1 : Wall. | 1.5 : Pane | ~1 : Wall. }} | ~1 : Wall. }}
+Pane --> blockrand.window("casement_window")
+''')
+        wall(1.2)
+        rules = self.place('beside.toml', '''title = "Beside"
+[presets.beside]
+description = "A preset of a test"
+class = "gruenderzeit"
+grammar = "beside.cga"
+roof_grammar = ""
+[[rule]]
+name = "all"
+level = "city"
+preset = "beside"
+''')
+        folder = self.region('beside', f'[build]\nlod = 3\nformats = "gltf"\ndistricts = "{rules}"\n' + LIMITS_OFF)
+        self.update(folder, SAMPLE)
+        first = self.current(folder)
+        self.update(folder)
+        self.assertEqual(self.current(folder), first, 'nothing changed')
+        wall(0.8)
+        self.update(folder)
+        self.assertNotEqual(self.current(folder), first)
+
     def test_a_hook_is_called_whatever_happens(self):
         told = self.path('told.txt')
         folder = self.region('hooked', f'[region]\nhook = "echo $BLOCKRAND_STATE $BLOCKRAND_BUILD >> {told}; exit 3"\n')

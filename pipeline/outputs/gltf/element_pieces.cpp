@@ -24,8 +24,8 @@ constexpr double kPlaceBytes = 6;    ///< translation, rotation, scale and featu
 constexpr double kShapeBytes = 800;  ///< JSON of a shape
 constexpr double kVertexBytes = 8, kTriangleBytes = 1.5;
 
-/// Bytes that a draw less is worth: where a shape saves no more, its pieces are baked. From 0 to 9,000 were tried on four quarters: draws
-/// fall by a third for 1 to 4 % more packed bytes up to here, then bytes rise faster.
+/// Bytes that a draw less is worth: where a shape saves no more, its pieces are baked. Draws fall by a third for 1 to 4 % more packed
+/// bytes up to 2,200; from there to here by 7 % more for 1 % (docs/internal/RESULTS.md, "Gutters, pitches of sides, shaped windows").
 constexpr double kDrawBytes = 3500;
 
 /// Shapes of whole pieces that a plan has at least, if there are so many, and how the others are tried.
