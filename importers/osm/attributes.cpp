@@ -70,6 +70,20 @@ class AttributeReader {
   model::Report& report_;
 };
 
+/// Tags by which somebody orders something of this program, and which nothing reads.
+void tell_unknown_orders(model::OsmId id, model::ObjectKind kind, Tags tags, model::Report& report) {
+  constexpr std::string_view kOurs = "blockrand:";
+  static_assert(osm_key::kPreset.starts_with(kOurs) && osm_key::kStyle.starts_with(kOurs));
+  for (const auto& [key, value] : tags) {
+    if (!key.starts_with(kOurs) || key == osm_key::kPreset || key == osm_key::kRoofPitches) continue;
+    const bool style = key == osm_key::kStyle;
+    if (style && kind == model::ObjectKind::building) continue;
+    report.add(id, IssueCode::parameter_unread,
+               std::string(key) + "=" + std::string(value) + ": " +
+                   (style ? "a part has the style of its building" : "nothing reads such a tag"));
+  }
+}
+
 bool any_key_of_the_scheme(Tags tags) {
   for (const auto& [k, v] : tags)
     if (k.starts_with("building:") || k.starts_with("roof:") || k.ends_with("height") || k.ends_with("level") ||
@@ -114,6 +128,7 @@ model::MappedAttributes read_attributes(model::OsmId id, model::ObjectKind kind,
   model::MappedAttributes a;
   AttributeReader read(id, tags, report);
   a.use = strings.intern(read.value(kind == model::ObjectKind::building ? osm_key::kBuilding : osm_key::kBuildingPart));
+  tell_unknown_orders(id, kind, tags, report);
   if (!any_key_of_the_scheme(tags)) return a;  // four of five buildings
 
   const auto length = [](std::string_view t) { return parse_length(t); };
@@ -140,10 +155,17 @@ model::MappedAttributes read_attributes(model::OsmId id, model::ObjectKind kind,
     const auto shape = parse_roof_shape(read.value(osm_key::kBuildingRoof));
     if (shape && *shape != model::RoofShape::other) a.roof_shape = shape;
   }
-  a.wall_colour = read.first(
-      {osm_key::kBuildingColour, osm_key::kBuildingColor, osm_key::kBuildingFacadeColour, osm_key::kFacadeColour},
-      parse_colour);
-  a.roof_colour = read.first({osm_key::kRoofColour, osm_key::kRoofColor, osm_key::kBuildingRoofColour}, parse_colour);
+  const auto colour = [&](std::initializer_list<std::string_view> keys, std::optional<model::Colour>& value,
+                          bool& word) {
+    value = read.first(keys, [&](std::string_view text) {
+      word = is_colour_word(text);
+      return parse_colour(text);
+    });
+  };
+  colour({osm_key::kBuildingColour, osm_key::kBuildingColor, osm_key::kBuildingFacadeColour, osm_key::kFacadeColour},
+         a.wall_colour, a.wall_colour_is_word);
+  colour({osm_key::kRoofColour, osm_key::kRoofColor, osm_key::kBuildingRoofColour}, a.roof_colour,
+         a.roof_colour_is_word);
   a.wall_material = strings.intern(
       read.first_text({osm_key::kBuildingMaterial, osm_key::kBuildingFacadeMaterial, osm_key::kFacadeMaterial}));
   a.roof_material = strings.intern(read.first_text({osm_key::kRoofMaterial, osm_key::kBuildingRoofMaterial}));

@@ -255,17 +255,31 @@ std::optional<double> parse_direction(std::string_view text) {
   return std::nullopt;
 }
 
+namespace {
+
+/// "Light Slate-Gray": lightslategray, as CSS writes it.
+std::string plain_name(std::string_view lower_text) {
+  std::string name;
+  for (const char c : lower_text)
+    if (c != ' ' && c != '-' && c != '_') name += c;
+  return name;
+}
+
+}  // namespace
+
 std::optional<model::Colour> parse_colour(std::string_view text) {
   const std::string lower_text = lowered(text);
   if (lower_text.starts_with("rgb")) return parse_rgb_function(lower_text);
   const std::string_view first = first_of_list(lower_text);
   if (first.starts_with('#')) return parse_hex(first.substr(1));
-  std::string name;
-  for (const char c : first)
-    if (c != ' ' && c != '-' && c != '_') name += c;
-  if (const auto known = colour_of_name(name)) return known;
+  if (const auto known = colour_of_name(plain_name(first))) return known;
   if (first.size() == 6) return parse_hex(first);
   return std::nullopt;
+}
+
+bool is_colour_word(std::string_view text) {
+  const std::string lower_text = lowered(text);
+  return !lower_text.starts_with("rgb") && colour_of_name(plain_name(first_of_list(lower_text))).has_value();
 }
 
 std::optional<model::RoofShape> parse_roof_shape(std::string_view text) {

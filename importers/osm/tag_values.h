@@ -30,6 +30,8 @@ std::optional<double> parse_direction(std::string_view text);
 /// `#a33`, `#aa3333` (a fourth component, opacity, is ignored), `aa3333`, `rgb(1,2,3)`, and the 148 colour names of CSS
 /// with or without blanks, hyphens and underscores (`dark red`, `light-grey`). Of a list the first counts.
 std::optional<model::Colour> parse_colour(std::string_view text);
+/// Whether parse_colour() reads a word ("red"), not numbers.
+bool is_colour_word(std::string_view text);
 
 /// A name of the scheme in either spelling (`half-hipped`, `half_hipped`) or a common synonym (`gable`, `hip`, `shed`);
 /// of a list the first. Any other non-empty text is RoofShape::other.

@@ -13,32 +13,11 @@ namespace {
 
 using base::TomlTable;
 
-std::optional<model::Colour> parse_hex(const std::string& text) {
-  if (text.size() != 7 || text[0] != '#') return std::nullopt;
-  std::uint8_t channel[3];
-  for (int i = 0; i < 3; ++i) {
-    int value = 0;
-    for (int k = 1; k <= 2; ++k) {
-      const char c = text[static_cast<std::size_t>(2 * i + k)];
-      if (c >= '0' && c <= '9')
-        value = value * 16 + (c - '0');
-      else if (c >= 'a' && c <= 'f')
-        value = value * 16 + (c - 'a' + 10);
-      else if (c >= 'A' && c <= 'F')
-        value = value * 16 + (c - 'A' + 10);
-      else
-        return std::nullopt;
-    }
-    channel[i] = static_cast<std::uint8_t>(value);
-  }
-  return model::Colour{channel[0], channel[1], channel[2]};
-}
-
 std::vector<model::Colour> palette(const TomlTable& table, std::string_view key,
                                    const std::vector<std::string>& texts) {
   std::vector<model::Colour> out;
   for (const std::string& text : texts) {
-    const auto colour = parse_hex(text);
+    const auto colour = model::colour_of_hex(text);
     if (!colour) table.fail(key, "`" + text + "` is no colour", "Write it as #rrggbb");
     out.push_back(*colour);
   }
@@ -107,6 +86,7 @@ void read_materials(const std::string& path, Defaults& out) {
     const auto colour = table.text("colour");
     if (!colour) table.fail("colour", "no colour", "Write colour = \"#rrggbb\"");
     material.colour = palette(table, "colour", {*colour})[0];
+    out.pigments.most_saturated.push_back(table.number("saturation", 0, 1).value_or(1));
     if (out.materials.size() >= 255) table.fail("", "more than 255 material classes", "Merge some");
     const auto index = static_cast<std::uint8_t>(out.materials.size());
     out.material_by_value[name] = index;
@@ -118,6 +98,9 @@ void read_materials(const std::string& path, Defaults& out) {
     out.materials.push_back(std::move(material));
   }
   classes->finish();
+  Pigments pigments = read_pigments(file, [&](std::string_view name) { return out.material(name); });
+  pigments.most_saturated = std::move(out.pigments.most_saturated);
+  out.pigments = std::move(pigments);
   file.finish();
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/attributes/pigments.h"
 #include "pipeline/model/colour.h"
 #include "pipeline/model/roof_shape.h"
 #include "pipeline/model/solid.h"
@@ -51,6 +52,7 @@ struct Defaults {
   double small_area = 30;           ///< m²
   std::vector<Material> materials;  ///< Face::material indexes these, in file order of names (alphabetical)
   std::map<std::string, std::uint8_t, std::less<>> material_by_value;  ///< OSM value or class name → index
+  Pigments pigments;
 
   const UseDefaults& use(std::string_view building_value) const;
   /// Index of the class that an OSM material value or a class name means; -1 for none.

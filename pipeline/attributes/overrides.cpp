@@ -75,8 +75,8 @@ void give(const OverrideEntry& e, MappedAttributes& m, base::StringPool& strings
       m.height = static_cast<float>(*eaves + *e.number("roof_height"));
     }
   }
-  take("wall_colour", m.wall_colour);
-  take("roof_colour", m.roof_colour);
+  if (take("wall_colour", m.wall_colour)) m.wall_colour_is_word = false;
+  if (take("roof_colour", m.roof_colour)) m.roof_colour_is_word = false;
   word("wall_material", m.wall_material);
   word("roof_material", m.roof_material);
   word("use", m.use);

@@ -48,15 +48,6 @@ std::optional<OsmId> parse_id(std::string_view text) {
   return id;
 }
 
-std::optional<model::Colour> parse_colour(std::string_view text) {
-  if (text.size() != 7 || text.front() != '#') return std::nullopt;
-  std::uint32_t value = 0;
-  const auto [end, error] = std::from_chars(text.data() + 1, text.data() + 7, value, 16);
-  if (error != std::errc() || end != text.data() + 7) return std::nullopt;
-  return model::Colour{static_cast<std::uint8_t>(value >> 16), static_cast<std::uint8_t>(value >> 8),
-                       static_cast<std::uint8_t>(value)};
-}
-
 [[noreturn]] void unknown(const TomlTable& table, std::string_view key, const std::string& value,
                           const std::vector<std::string>& known) {
   const std::string near = base::nearest(value, known);
@@ -174,7 +165,7 @@ class Reader {
   std::optional<OverrideValue> value(TomlTable& table, std::string_view key, model::Colour) {
     const auto v = table.text(key);
     if (!v) return std::nullopt;
-    const auto colour = parse_colour(*v);
+    const auto colour = model::colour_of_hex(*v);
     if (!colour) table.fail(key, "is no colour: '" + *v + "'", "Write it as \"#rrggbb\".");
     return OverrideValue{*colour};
   }
@@ -291,7 +282,7 @@ class Reader {
       if (defaults_.material(v) < 0) unknown(table, "material", v, materials_);
     };
     const auto colour = [&](const std::string& v) {
-      if (!parse_colour(v)) table.fail("colour", "is no colour: '" + v + "'", "Write it as \"#rrggbb\".");
+      if (!model::colour_of_hex(v)) table.fail("colour", "is no colour: '" + v + "'", "Write it as \"#rrggbb\".");
     };
     text("colour", colour);
     text("material", material);

@@ -154,7 +154,8 @@ Sourced<double> Resolver::storeys() {
 template <class Pick>
 Sourced<Colour> Resolver::colour(std::optional<Colour> tagged, std::optional<Colour> outline_tagged,
                                  const model::InferredCandidate<Colour>& seen, const Sourced<std::string>& material,
-                                 const std::vector<Colour>& palette, const char* choice, Pick&& usual_applies) {
+                                 const std::vector<Colour>& palette, const char* choice, bool weathers,
+                                 Pick&& usual_applies) {
   std::vector<Choice<Colour>> choices;
   if (tagged) choices.push_back({*tagged, Source::tag, kTagConfidence, "tagged"});
   if (outline_tagged) choices.push_back({*outline_tagged, Source::implied, kOutlineConfidence, "the outline's colour"});
@@ -163,11 +164,40 @@ Sourced<Colour> Resolver::colour(std::optional<Colour> tagged, std::optional<Col
   if (!usual_applies() && index >= 0)
     choices.push_back({in.defaults.materials[static_cast<std::size_t>(index)].colour, Source::implied, 0.5,
                        "colour of " + material.value});
-  // All parts of a building are painted alike: the key is the building's.
-  const std::uint64_t bits = base::random_bits(in.seed, building.osm.key(), choice);
-  choices.push_back(
-      {palette[bits % palette.size()], usual_source(), kDefaultConfidence, "drawn from the palette, " + usual_name()});
+  choices.push_back(drawn_colour(palette, choice, weathers));
   return first(std::move(choices));
+}
+
+Choice<Colour> Resolver::drawn_colour(const std::vector<Colour>& palette, const char* choice, bool weathers) const {
+  // All parts of a building are painted alike: the key is the building's. Roofs of a block are mostly of one clay or slate.
+  std::uint64_t key = building.osm.key();
+  const auto& roofs = in.defaults.pigments.drawn_roofs;
+  std::string why = "drawn from the palette, ";
+  if (weathers && roofs && !building.situation.block.empty() &&
+      base::random_unit(in.seed, key, "roof_like_its_block") < roofs->alike) {
+    key = base::hash_text(building.situation.block);
+    why = "as most roofs of the block, drawn from the palette, ";
+  }
+  const std::uint64_t bits = base::random_bits(in.seed, key, choice);
+  return {palette[bits % palette.size()], usual_source(), kDefaultConfidence, why + usual_name()};
+}
+
+Colour Resolver::shown(Sourced<Colour>& colour, MappedColour mapped, const Sourced<std::string>& material,
+                       bool weathers) {
+  const Pigments& pigments = in.defaults.pigments;
+  const auto class_of = static_cast<std::uint8_t>(std::max(in.defaults.material(material.value), 0));
+  if (mapped == MappedColour::word) {
+    const Colour out = pigments.on_material(colour.value, class_of);
+    if (out == colour.value) return out;
+    model::Evidence why = region.evidence[colour.evidence];
+    why.text += fmt::format("; a word: shown as {}, what it means on {}", model::text(out), material.value);
+    colour.evidence = region.evidence.add(std::move(why));
+    return out;
+  }
+  // What somebody measured, by numbers in a tag or in an image, is shown as it is.
+  if (mapped == MappedColour::numbers || colour.source == Source::imagery) return colour.value;
+  return weathers ? pigments.weathered(colour.value, base::random_bits(in.seed, building.osm.key(), "weathering"))
+                  : pigments.muted(colour.value, class_of);
 }
 
 Sourced<std::string> Resolver::material(base::StringId tagged, base::StringId outline_tagged,
@@ -192,13 +222,23 @@ void Resolver::surfaces(Attributes& a) {
   const bool flat = a.roof_shape.value == RoofShape::flat;
   a.roof_material = material(own.roof_material, outline_roof, flat ? usual.flat_roof_material : usual.roof_material);
   a.wall_colour = colour(own.wall_colour, outline ? outline->wall_colour : std::nullopt, {}, a.wall_material,
-                         usual.wall_colours, "wall_colour", [&] {
+                         usual.wall_colours, "wall_colour", false, [&] {
                            return a.wall_material.source != Source::tag && a.wall_material.source != Source::implied;
                          });
   a.roof_colour = colour(
       own.roof_colour, outline ? outline->roof_colour : std::nullopt, building.seen_roof.colour, a.roof_material,
-      usual.roof_colours, "roof_colour",
+      usual.roof_colours, "roof_colour", true,
       [&] { return !flat && a.roof_material.source != Source::tag && a.roof_material.source != Source::implied; });
+  const auto how = [&](std::optional<Colour> MappedAttributes::*value, bool MappedAttributes::*word) {
+    const MappedAttributes* m = own.*value ? &own : outline && outline->*value ? outline : nullptr;
+    return !m ? MappedColour::none : m->*word ? MappedColour::word : MappedColour::numbers;
+  };
+  a.shown_wall_colour =
+      shown(a.wall_colour, how(&MappedAttributes::wall_colour, &MappedAttributes::wall_colour_is_word), a.wall_material,
+            false);
+  a.shown_roof_colour =
+      shown(a.roof_colour, how(&MappedAttributes::roof_colour, &MappedAttributes::roof_colour_is_word), a.roof_material,
+            true);
 }
 
 Attributes Resolver::resolve(Sourced<double> lowest) {

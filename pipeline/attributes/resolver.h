@@ -215,8 +215,17 @@ struct Resolver {
   model::Sourced<model::Colour> colour(std::optional<model::Colour> tagged, std::optional<model::Colour> outline_tagged,
                                        const model::InferredCandidate<model::Colour>& seen,
                                        const model::Sourced<std::string>& material,
-                                       const std::vector<model::Colour>& palette, const char* choice,
+                                       const std::vector<model::Colour>& palette, const char* choice, bool weathers,
                                        Pick&& usual_applies);
+  /// A colour of the palette. \param weathers  a roof's: most of a block are alike
+  Choice<model::Colour> drawn_colour(const std::vector<model::Colour>& palette, const char* choice,
+                                     bool weathers) const;
+
+  /// How the map gives a colour.
+  enum class MappedColour : std::uint8_t { none, numbers, word };
+  /// What the faces have: words mean pigments, drawn roofs are weathered. Says so in the evidence of `colour`.
+  model::Colour shown(model::Sourced<model::Colour>& colour, MappedColour mapped,
+                      const model::Sourced<std::string>& material, bool weathers);
 
   model::Sourced<std::string> material(base::StringId tagged, base::StringId outline_tagged,
                                        const std::string& usual_material);

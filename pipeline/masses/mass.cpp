@@ -132,10 +132,10 @@ class MassBuilder {
     const auto& a = part.attributes;
     const bool on_ground = a.min_height.value <= 0 && !part.canopy;
     EnvelopeMaterials materials;
-    materials.wall = face(SurfaceKind::wall, a.wall_material.value, a.wall_colour.value);
-    materials.roof = face(SurfaceKind::roof, a.roof_material.value, a.roof_colour.value);
+    materials.wall = face(SurfaceKind::wall, a.wall_material.value, a.shown_wall_colour);
+    materials.roof = face(SurfaceKind::roof, a.roof_material.value, a.shown_roof_colour);
     materials.under =
-        face(on_ground ? SurfaceKind::ground : SurfaceKind::outer_ceiling, a.wall_material.value, a.wall_colour.value);
+        face(on_ground ? SurfaceKind::ground : SurfaceKind::outer_ceiling, a.wall_material.value, a.shown_wall_colour);
     return materials;
   }
 

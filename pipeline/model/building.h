@@ -36,7 +36,8 @@ struct Attributes {
   std::optional<Sourced<double>> roof_direction;  ///< clockwise from north, down the slope
   Sourced<double> ground_height;  ///< base above the build's height reference: the lowest ground under the building
   Sourced<double> plinth_height;  ///< from there up to the level of the ground floor
-  Sourced<Colour> wall_colour, roof_colour;
+  Sourced<Colour> wall_colour, roof_colour;     ///< as mapped or drawn
+  Colour shown_wall_colour, shown_roof_colour;  ///< what faces have: pigments of named colours, drawn roofs weathered
   Sourced<std::string> wall_material, roof_material;  ///< names of material classes
   Sourced<double> eaves_height;                       ///< lowest ground to the eaves: height less roof_height
   Sourced<double> roof_pitch;                         ///< degrees, of the main slope; 0 for flat roofs

@@ -52,9 +52,10 @@ struct MappedAttributes {
   SidePitches side_pitches;  ///< of single sides of the roof
   std::optional<RoofShape> roof_shape;
   std::optional<Colour> wall_colour, roof_colour;
-  base::StringId wall_material = 0, roof_material = 0;  ///< as tagged, 0 where absent
-  base::StringId use = 0;                               ///< the value of building=* or building:part=*
-  std::optional<ConstructionDate> built;                ///< start_date and its kin
+  bool wall_colour_is_word = false, roof_colour_is_word = false;  ///< "red", not "#ff0000": a pigment is meant
+  base::StringId wall_material = 0, roof_material = 0;            ///< as tagged, 0 where absent
+  base::StringId use = 0;                                         ///< the value of building=* or building:part=*
+  std::optional<ConstructionDate> built;                          ///< start_date and its kin
 };
 
 enum class ObjectKind : std::uint8_t { building, building_part };

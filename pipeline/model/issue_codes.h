@@ -38,7 +38,7 @@ enum class IssueClass : std::uint8_t {
     "The mapped ridges and edges make no roof; its shape was built.")                                                \
   X(roof_simplified, "ROOF_SIMPLIFIED", fallback, "The roof stands on a simplified plan.")                           \
   X(side_pitch_unread, "SIDE_PITCH_UNREAD", fallback,                                                                \
-    "A pitch ordered for a side of the roof found no such side, or a roof that has none.")                           \
+    "A pitch ordered for a side of the roof found no such side, a roof that has none, or a height against it.")      \
   X(skeleton_fallback, "SKELETON_FALLBACK", fallback, "The weighted skeleton gave up; CGAL's hips were built.")      \
   X(roof_row_ignored, "ROOF_ROW_IGNORED", fallback, "No valid roof between the party walls; it falls to all sides.") \
   X(roof_height_clamped, "ROOF_HEIGHT_CLAMPED", fallback, "The roof was higher than the building allows.")           \
@@ -50,6 +50,8 @@ enum class IssueClass : std::uint8_t {
     "Chimneys, gables, dormers or roof windows did not fit; the others were built.")                                 \
   X(grammar_error, "GRAMMAR_ERROR", fallback,                                                                        \
     "A rule asked for what cannot be made; the rest of the facade was built.")                                       \
+  X(leaf_dropped, "LEAF_DROPPED", fallback,                                                                          \
+    "What a rule made has no place in the model; the rest of the facade was built.")                                 \
   X(plan_simplified, "PLAN_SIMPLIFIED", fallback, "The plan was simplified to get a valid solid.")                   \
   X(rest_failed, "REST_FAILED", fallback, "The part of the outline that its parts leave free could not be built.")   \
   /* mended, ignored, unreadable */                                                                                  \
@@ -88,6 +90,8 @@ enum class IssueClass : std::uint8_t {
     "A roof along whole facades does not fit the plan; every bay has its own slopes.")                               \
   X(override_unmatched, "OVERRIDE_UNMATCHED", notice,                                                                \
     "An entry of the overrides has nothing in the extract to act on.")                                               \
+  X(parameter_unread, "PARAMETER_UNREAD", notice,                                                                    \
+    "A parameter, tag or order that nothing reads: the rule file of the preset asks for no such name.")              \
   X(text_cleaned, "TEXT_CLEANED", notice, "Characters that no XML file may hold were replaced in a tag.")            \
   X(requirement_missed, "REQUIREMENT_MISSED", notice, "The house, as built, misses a measure that its preset states.")
 

@@ -38,6 +38,8 @@ namespace blockrand::model {
   X(kBuildingRoofHeight, "building:roof:height", "the same, older")                                               \
   X(kRoofAngle, "roof:angle", "pitch, degrees")                                                                   \
   X(kBuildingRoofAngle, "building:roof:angle", "the same, older")                                                 \
+  X(kPreset, "blockrand:preset", "preset of the fronts; on an area: of all houses in it")                         \
+  X(kStyle, "blockrand:style", "class of appearance or sub-style; on an area: of all houses in it")               \
   X(kRoofPitches, "blockrand:roof_pitches", "pitches of single sides of the roof, degrees: street 60, yard 30")   \
   X(kRoofDirection, "roof:direction", "where the main slope falls to")                                            \
   X(kRoofSlopeDirection, "roof:slope:direction", "the same, older")                                               \

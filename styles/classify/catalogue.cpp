@@ -20,22 +20,6 @@ constexpr int kFirstYear = 500, kLastYear = 2100;
 
 using Palettes = std::map<std::string, std::vector<model::Colour>, std::less<>>;
 
-std::optional<model::Colour> parse_hex(std::string_view text) {
-  if (text.size() != 7 || text[0] != '#') return std::nullopt;
-  std::array<std::uint8_t, 3> channels{};
-  for (std::size_t i = 1; i < 7; ++i) {
-    const char c = text[i];
-    const int digit = c >= '0' && c <= '9'   ? c - '0'
-                      : c >= 'a' && c <= 'f' ? c - 'a' + 10
-                      : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                             : -1;
-    if (digit < 0) return std::nullopt;
-    std::uint8_t& channel = channels[(i - 1) / 2];
-    channel = static_cast<std::uint8_t>(channel * 16 + digit);
-  }
-  return model::Colour{channels[0], channels[1], channels[2]};
-}
-
 template <class T>
 T required(const TomlTable& table, std::string_view key, std::optional<T> value) {
   if (!value) table.fail(key, "no `" + std::string(key) + "`", "Every style needs it");
@@ -72,7 +56,7 @@ std::vector<model::Colour> colours_of(const TomlTable& table, std::string_view k
       out.insert(out.end(), palette->second.begin(), palette->second.end());
       continue;
     }
-    const auto colour = parse_hex(text);
+    const auto colour = model::colour_of_hex(text);
     if (!colour) {
       std::vector<std::string> known;
       for (const auto& [id, colours] : palettes) known.push_back(id);

@@ -64,6 +64,9 @@ void add_attributes(std::vector<Column>& columns) {
         columns.push_back({name + "_confidence", ColumnKind::real, "", "How sure " + name + " is, from 0 to 1"});
       },
       [](std::string_view, std::string_view) {});
+  for (const char* of : {"wall", "roof"})
+    columns.push_back({std::string("shown_") + of + "_colour", ColumnKind::text, "",
+                       "What the model shows: a colour's word as paint or clay of that name, drawn roofs weathered"});
 }
 
 void add_address(std::vector<Column>& columns) {

@@ -157,6 +157,7 @@ class Builder {
                                          address.house_number.empty() ? address.house_name : address.house_number})
       row.text(field);
     write_attributes(row, b.attributes);
+    write_shown_colours(row, b.attributes);
     write_style(row, b.style);
     write_situation(row, b);
     write_repair(row, b.repaired);
@@ -185,9 +186,15 @@ class Builder {
     const Address address = own_object ? tags_.address(p.tags) : Address{};
     row.text(address.empty() ? std::string() : address.line());
     write_attributes(row, p.attributes);
+    write_shown_colours(row, p.attributes);
     write_tags(row, region_, own_object ? p.tags : model::Range{});
     append_polygon(row.geometry(), p.plan);
     row.end_row();
+  }
+
+  static void write_shown_colours(RowWriter& row, const model::Attributes& a) {
+    row.text(model::text(a.shown_wall_colour));
+    row.text(model::text(a.shown_roof_colour));
   }
 
   static std::string body_id(const model::Building& b, const model::BuildingPart& p) {

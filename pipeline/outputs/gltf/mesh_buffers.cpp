@@ -71,7 +71,7 @@ std::optional<Footprint> footprint_of(const model::BuildingPart& part, const mod
   for (const model::Ring& hole : part.plan.holes) add(hole);
   model::Face looks;
   looks.kind = model::SurfaceKind::roof;
-  looks.colour = part.attributes.roof_colour.value;
+  looks.colour = part.attributes.shown_roof_colour;
   for (std::size_t m = 0; m < region.materials.size(); ++m)
     if (region.materials[m].name == part.attributes.roof_material.value) looks.material = static_cast<std::uint8_t>(m);
   geometry::SolidBuilder builder;
