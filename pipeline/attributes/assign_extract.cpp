@@ -37,7 +37,7 @@ constexpr double kDegreesToMetres = 1e-7 * 111'000;  // of latitude, rounded dow
 /// guess.
 constexpr double kHeightPerStorey = 3.0;
 
-const std::string_view kAreaTags[] = {"blockrand:preset", "blockrand:style"};
+const std::string_view kAreaTags[] = {model::osm_key::kPreset, model::osm_key::kStyle};
 
 AreaRings rings_of(const Extract& extract, const Feature& f) {
   AreaRings rings;
@@ -418,6 +418,26 @@ std::vector<const districts::Preset*> presets_with_measures(const model::Region&
   return out;
 }
 
+namespace {
+
+/// `blockrand:preset` on a part: its front differs from the building's.
+void take_tagged_preset(model::Region& region, const districts::RuleSets& book, model::BuildingPart& part) {
+  const std::string_view wanted = region.extract->tag(part.tags, model::osm_key::kPreset);
+  if (wanted.empty()) return;
+  const auto known = std::ranges::find(book.presets, wanted, &districts::Preset::name);
+  if (known == book.presets.end()) {
+    region.report.add(part.osm, model::IssueCode::value_unreadable,
+                      fmt::format("{}={}", model::osm_key::kPreset, wanted));
+    return;
+  }
+  const model::Sourced<std::string>& of_building = part.attributes.preset;
+  const model::EvidenceId why = region.evidence.add(
+      {"tagged on the part", {{of_building.source, of_building.confidence, of_building.value, "as the building"}}});
+  part.attributes.preset = {known->name, model::Source::tag, 0.95f, why};
+}
+
+}  // namespace
+
 void assign_region(model::Region& region, std::span<const std::uint32_t> numbers, const DistrictAssigner& assigner) {
   for (std::size_t i = 0; i < region.buildings.size(); ++i) {
     model::Building& building = region.buildings[i];
@@ -432,7 +452,10 @@ void assign_region(model::Region& region, std::span<const std::uint32_t> numbers
       building.preset_parameters.emplace_back(std::move(p.key), std::move(p.value));
     const model::EvidenceId why = region.evidence.add({std::move(a.why), std::move(a.other_candidates)});
     building.attributes.preset = {name, d.source, d.confidence, why};
-    for (model::BuildingPart& part : building.parts) part.attributes.preset = building.attributes.preset;
+    for (model::BuildingPart& part : building.parts) {
+      part.attributes.preset = building.attributes.preset;
+      if (part.osm != building.osm) take_tagged_preset(region, assigner.book(), part);
+    }
   }
 }
 

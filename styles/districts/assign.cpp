@@ -7,12 +7,13 @@
 #include <map>
 
 #include "pipeline/base/random.h"
+#include "pipeline/model/osm_keys.h"
 
 namespace blockrand::districts {
 
 namespace {
 
-constexpr std::string_view kPresetTag = "blockrand:preset", kStyleTag = "blockrand:style";
+constexpr std::string_view kPresetTag = model::osm_key::kPreset, kStyleTag = model::osm_key::kStyle;
 constexpr float kTagConfidence = 0.95f, kAreaTagConfidence = 0.8f;
 /// How much a rule is trusted by how closely it looks: experience, to be replaced when presets are judged.
 constexpr double kLevelConfidence[] = {0.4, 0.6, 0.7, 0.8};
@@ -108,6 +109,11 @@ bool any(const std::vector<T>& of, const V& value) {
   return of.empty() || std::find(of.begin(), of.end(), value) != of.end();
 }
 
+bool carries(const Subject& s, const TagTest& test) {
+  const std::string_view value = tag_of(s, test.key);
+  return !value.empty() && (test.value.empty() || value == test.value);
+}
+
 bool fires(const Rule& rule, const Subject& s, const SubjectStyle& subject_style) {
   const Which& w = rule.which;
   // What is at hand first, what has to be looked up last.
@@ -134,10 +140,9 @@ bool fires(const Rule& rule, const Subject& s, const SubjectStyle& subject_style
     const std::optional<double> value = s.cell ? s.cell(statistic) : std::nullopt;
     if (!value || !range.holds(*value)) return false;
   }
-  for (const TagTest& t : w.tags) {
-    const std::string_view value = tag_of(s, t.key);
-    if (value.empty() || (!t.value.empty() && value != t.value)) return false;
-  }
+  if (!std::ranges::all_of(w.tags, [&](const TagTest& t) { return carries(s, t); })) return false;
+  if (!w.any_tags.empty() && !std::ranges::any_of(w.any_tags, [&](const TagTest& t) { return carries(s, t); }))
+    return false;
   if (w.storeys) {
     const std::optional<double> storeys = s.storeys ? s.storeys() : std::nullopt;
     if (!storeys || !w.storeys->holds(*storeys)) return false;
@@ -230,6 +235,9 @@ std::string conditions(const RuleSet& set, const Rule& rule, const Subject& s, c
   if (w.storeys) words.push_back(fmt::format("{:g} storeys", s.storeys().value_or(0)));
   if (!w.positions.empty()) words.push_back(position_text(s.position));
   for (const TagTest& t : w.tags) words.push_back("tagged " + t.text());
+  if (const auto t = std::ranges::find_if(w.any_tags, [&](const TagTest& a) { return carries(s, a); });
+      t != w.any_tags.end())
+    words.push_back("tagged " + t->text());
   if (w.house) words.push_back(*w.house ? "a house" : "no house");
   for (const auto& [statistic, range] : rule.where.cell)
     words.push_back(fmt::format("{} {:.2f} around", kCellStatisticNames[static_cast<std::size_t>(statistic)],

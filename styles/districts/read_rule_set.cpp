@@ -369,6 +369,8 @@ class Reader {
       which.positions.push_back(static_cast<model::BuildingPosition>(
           1 + index_of(table, "position", position, position_names(), "position in a block")));
     for (const std::string& tag : one_or_more(table, "tag")) which.tags.push_back(tag_test(table, "tag", tag));
+    for (const std::string& tag : one_or_more(table, "any_tag"))
+      which.any_tags.push_back(tag_test(table, "any_tag", tag));
     which.house = table.boolean("house");
     table.finish();
   }

@@ -32,7 +32,7 @@ std::string PlaceQuery::text() const {
 bool Rule::unconditional() const {
   return where.queries.empty() && !where.bbox && where.cell.empty() && !which.style && which.eras.empty() &&
          !which.years && which.substyles.empty() && which.uses.empty() && !which.area && !which.storeys &&
-         !which.front && which.positions.empty() && which.tags.empty() && !which.house;
+         !which.front && which.positions.empty() && which.tags.empty() && which.any_tags.empty() && !which.house;
 }
 
 bool holds(std::span<const model::Location> ring, model::Location p) {

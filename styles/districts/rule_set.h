@@ -83,8 +83,9 @@ struct Which {
   std::vector<std::string> substyles, uses;  ///< substyles: the likeliest is one of them, with at least `probability`
   std::optional<Interval> area, storeys, front;
   std::vector<model::BuildingPosition> positions;
-  std::vector<TagTest> tags;  ///< all must hold
-  std::optional<bool> house;  ///< false: monuments, garages and the like only
+  std::vector<TagTest> tags;      ///< all must hold
+  std::vector<TagTest> any_tags;  ///< one of them must hold; empty: nothing is asked
+  std::optional<bool> house;      ///< false: monuments, garages and the like only
 };
 
 struct WeightedPreset {

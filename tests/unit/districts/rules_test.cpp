@@ -575,7 +575,7 @@ TEST(Shipped, EveryRuleSetIsReadAndGivesEveryBuildingAPreset) {
   book.presets = read_presets((configs / "styles" / "presets.toml").string());
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::directory_iterator(configs / "districts"))
-    files.push_back(entry.path().string());
+    if (entry.is_regular_file()) files.push_back(entry.path().string());
   std::sort(files.begin(), files.end());
   for (const std::string& file : files) read_rule_set(file, book);
   EXPECT_GE(book.sets.size(), 6u);
@@ -593,11 +593,15 @@ TEST(Shipped, EveryRuleSetIsReadAndGivesEveryBuildingAPreset) {
       }
       return first;
     };
-    model::BuildingStyle garage, other, low;
+    model::BuildingStyle garage, other, low, other_class;
+    other_class.style = {0, 0, 0, 1};
+    other_class.era = {0.25f, 0.25f, 0.25f, 0.25f};
     garage.style = {0, 0, 0, 1};
     garage.era = {0, 0, 0, 1};
     garage.non_house = true;
-    EXPECT_THAT(preset(garage, "garage", 20, 1), testing::StartsWith("ancillary")) << book.sets[i].name;
+    EXPECT_THAT(preset(garage, "garage", 20, 1), testing::StartsWith("garage")) << book.sets[i].name;
+    EXPECT_THAT(preset(garage, "shed", 20, 1), testing::StartsWith("ancillary")) << book.sets[i].name;
+    EXPECT_THAT(preset(other_class, "church", 600, 1), testing::StartsWith("church")) << book.sets[i].name;
     EXPECT_THAT(preset(garage, "bridge", 200, 1), testing::StartsWith("plain")) << book.sets[i].name;
     other.style = {0.3f, 0.1f, 0.25f, 0.35f};
     other.era = {0.1f, 0.3f, 0.3f, 0.3f};
@@ -607,6 +611,13 @@ TEST(Shipped, EveryRuleSetIsReadAndGivesEveryBuildingAPreset) {
     EXPECT_THAT(preset(low, "yes", 150, 1), testing::Not(HasSubstr("gz_"))) << book.sets[i].name;
     EXPECT_TRUE(book.sets[i].prior.style && book.sets[i].prior.era) << book.sets[i].name;
   }
+  // A preset that no rule can choose is dead: nobody ever sees it.
+  std::set<std::uint32_t> chosen;
+  for (const RuleSet& set : book.sets)
+    for (const Rule& rule : set.rules)
+      for (const WeightedPreset& w : rule.presets) chosen.insert(w.preset);
+  for (std::uint32_t p = 0; p < book.presets.size(); ++p)
+    EXPECT_TRUE(chosen.contains(p)) << book.presets[p].name << " is chosen by no rule of any shipped set";
 }
 
 }  // namespace
