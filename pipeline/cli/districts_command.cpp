@@ -22,6 +22,7 @@
 #include "pipeline/cli/signals.h"
 #include "pipeline/cli/spooled_input.h"
 #include "pipeline/cli/staged_file.h"
+#include "pipeline/facades/grammar_library.h"
 #include "pipeline/georef/crs.h"
 #include "pipeline/run/district_survey.h"
 #include "pipeline/run/output_place.h"
@@ -76,7 +77,11 @@ int check(const Settings& s) {
   std::string text;
   const auto try_read = [&](const std::string& name) {
     try {
-      text += summary(attributes::read_rule_sets(s.build.configs, name).book);
+      const attributes::ReadRuleSets read = attributes::read_rule_sets(s.build.configs, name);
+      text += summary(read.book);
+      for (std::string& what :
+           facades::unread_parameters(read.book, facades::read_grammars(s.build.configs, read.book.presets)))
+        errors.push_back(std::move(what));
       return true;
     } catch (const base::InputError& error) {
       errors.emplace_back(error.what());

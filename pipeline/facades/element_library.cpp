@@ -70,7 +70,7 @@ PartMaterials ElementLibrary::usual_materials(const model::BuildingPart& part) c
   const auto set = [&](ElementPart p, std::uint8_t material, model::Colour colour) {
     out[static_cast<std::size_t>(p)] = {material, colour};
   };
-  model::PartMaterial wall{plaster_, part.attributes.wall_colour.value};
+  model::PartMaterial wall{plaster_, part.attributes.shown_wall_colour};
   for (const model::Face& face : part.lod2.faces)
     if (face.kind == model::SurfaceKind::wall) {
       wall = {face.material, face.colour};
@@ -178,6 +178,29 @@ std::uint32_t ElementLibrary::take(std::string& error) {
   for (std::size_t p = 0; p < materials_of_parts_.size(); ++p)
     if (!made->second.parts[p]) materials_of_parts_[p] = {};
   return number_of(*made, materials_of_parts_);
+}
+
+std::uint32_t ElementLibrary::add_made(model::Element&& element, const PartMaterials& materials) {
+  key_.clear();
+  add_key('g', element.name);
+  add_key('c', element.semantic == model::ElementClass::door ? "door" : "");
+  add_key(element.opening.reveal, model::kGridStepsPerMetre);
+  for (const model::Point2& p : element.opening.outline)
+    add_key(p.x, model::kGridStepsPerMetre), add_key(p.y, model::kGridStepsPerMetre);
+  for (const model::ElementFace& face : element.mesh.faces) {
+    add_key('f', model::name(face.part));
+    for (std::uint32_t i = face.first; i < face.first + face.count; ++i) {
+      const model::Point3& v = element.mesh.vertices[element.mesh.indices[i]];
+      for (const double c : {v.x, v.y, v.z}) add_key(c, model::kGridStepsPerMetre);
+    }
+  }
+  auto made = made_.find(key_);
+  if (made == made_.end()) {
+    Made entry;
+    entry.element = std::make_shared<const model::Element>(std::move(element));
+    made = made_.emplace(key_, std::move(entry)).first;
+  }
+  return number_of(*made, materials);
 }
 
 std::uint32_t ElementLibrary::number_of(Entry& entry, const PartMaterials& materials) {

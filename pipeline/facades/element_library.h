@@ -48,6 +48,9 @@ class ElementLibrary {
   /// a simpler one was made, `error` says so.
   std::uint32_t take(std::string& error);
 
+  /// The number of an element that rules made themselves: equal ones are one.
+  std::uint32_t add_made(model::Element&& element, const PartMaterials& materials);
+
   /// All elements of another library, in their order, as if they had been asked for here. \param other  has nothing left
   /// \return  number here by number there
   std::vector<std::uint32_t> take_over(ElementLibrary& other);

@@ -144,11 +144,25 @@ std::vector<double> storey_heights(const C& c) {
   return out;
 }
 
+/// Index into Building::edges of the wall that people come in by: of the main front; of a house without a street front the longest
+/// one on a yard, else the longest free one. kNoIndex: all are party walls.
+std::uint32_t entered_by(const model::Building& building) {
+  if (!building.situation.fronts.empty()) return building.situation.fronts.front();
+  std::uint32_t best = model::kNoIndex;
+  std::pair<bool, double> most{false, 0};
+  for (std::uint32_t i = 0; i < building.edges.size(); ++i) {
+    const model::WallSegment& e = building.edges[i];
+    if (e.kind == model::WallSegmentKind::party_wall || e.kind == model::WallSegmentKind::unknown) continue;
+    const std::pair of{e.kind == model::WallSegmentKind::courtyard, e.length()};
+    if (best == model::kNoIndex || of > most) best = i, most = of;
+  }
+  return best;
+}
+
 bool is_main_front(const C& c) {
-  const auto& fronts = c.building.situation.fronts;
+  const std::uint32_t front = entered_by(c.building);
   return any_edge(c, [&](const model::WallSegment& e) {
-    const auto number = static_cast<std::uint32_t>(&e - c.building.edges.data());
-    return !fronts.empty() && fronts.front() == number;
+    return static_cast<std::uint32_t>(&e - c.building.edges.data()) == front;
   });
 }
 
@@ -190,10 +204,9 @@ const std::vector<ContextAttribute> kAttributes = {
      [](const C& c) -> Value { return c.part.attributes.plinth_height.value; }},
     {"building.position", "", "free_standing, end_of_row, mid_row, corner_house, rear_building, side_wing, unknown",
      [](const C& c) -> Value { return text(model::name(c.building.situation.position)); }},
-    {"building.preset", "", "name of the preset",
-     [](const C& c) -> Value { return c.building.attributes.preset.value; }},
+    {"building.preset", "", "name of the preset", [](const C& c) -> Value { return c.part.attributes.preset.value; }},
     {"building.roof_colour", "", "#rrggbb",
-     [](const C& c) -> Value { return colour(c.part.attributes.roof_colour.value); }},
+     [](const C& c) -> Value { return colour(c.part.attributes.shown_roof_colour); }},
     {"building.storey_height", "m", "mean, floor to floor",
      [](const C& c) -> Value { return c.part.attributes.storey_height.value; }},
     {"building.storeys", "", "full storeys above ground",
@@ -203,7 +216,7 @@ const std::vector<ContextAttribute> kAttributes = {
     {"building.use", "", "apartments, house, office …",
      [](const C& c) -> Value { return c.part.attributes.use.value; }},
     {"building.wall_colour", "", "#rrggbb",
-     [](const C& c) -> Value { return colour(c.part.attributes.wall_colour.value); }},
+     [](const C& c) -> Value { return colour(c.part.attributes.shown_wall_colour); }},
     {"building.wall_material", "", "plaster, brick, stone …",
      [](const C& c) -> Value { return c.part.attributes.wall_material.value; }},
     {"building.width", "m", "along the main front; 0: not known",
@@ -235,7 +248,8 @@ const std::vector<ContextAttribute> kAttributes = {
     {"edge.kind_right", "", "the same of the right end",
      [](const C& c) -> Value { return kind_text(c.segment.kind_right); }},
     {"edge.length", "m", "of the stretch", [](const C& c) -> Value { return c.segment.length(); }},
-    {"edge.main_front", "", "the longest stretch of the main front",
+    {"edge.main_front", "",
+     "the longest stretch of the main front; without a street front the longest wall on a yard, else of all",
      [](const C& c) -> Value { return is_main_front(c); }},
     {"edge.raised", "m", "the ground to the base of the wall: more than 0 above passages and lower parts",
      [](const C& c) -> Value { return std::max(0.0, c.wall.base - c.part.attributes.ground_height.value); }},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -22,6 +23,7 @@
 #include "pipeline/facades/openings.h"
 #include "pipeline/facades/passages.h"
 #include "pipeline/facades/roof_elements.h"
+#include "pipeline/facades/rule_geometry.h"
 #include "pipeline/facades/wall_corners.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon_measures.h"
@@ -59,7 +61,8 @@ class FacadeBuilder {
   /// \param mass  the roof that the part's LoD2 has; gets what is built on it. Null: nothing is
   void build(model::Building& building, BuildingPart& part, masses::BuiltMass* mass) {
     if (part.lod < 2 || part.lod2.empty() || part.canopy) return;
-    const GrammarLibrary::Entry* grammar = grammars_.find(building.attributes.preset.value);
+    // An order for a part alone gives it a front of its own.
+    const GrammarLibrary::Entry* grammar = grammars_.find(part.attributes.preset.value);
     if (!grammar) return;
     closed_ = {&part.lod2, &part.lod2_triangles};
     std::vector<WallFrame> walls;
@@ -68,6 +71,8 @@ class FacadeBuilder {
     rounding_ = building.parts.size() > 1 ? CornerRounding::behind_wall : CornerRounding::nearest;
     asked_.clear();
     told_.clear();
+    dropped_.clear();
+    painted_.clear();
     usual_materials_ = library_.usual_materials(part);
     const std::uint64_t seed = base::random_bits(options_.seed, building.osm.key(), "facades");
     const std::uint64_t row =
@@ -76,7 +81,7 @@ class FacadeBuilder {
     portals_ = take_portals(part, walls, segments);
     const double eaves = eaves_level(part);
     link_corners(segments, walls, eaves);
-    portal_elements_ = yielding_ = missed_doors_ = 0;
+    portal_elements_ = yielding_ = missed_doors_ = before_wall_ = 0;
     checked_portals_.clear();
     if (!portals_.empty()) {
       try_passages(part, walls);
@@ -161,7 +166,7 @@ class FacadeBuilder {
       const model::Element& element = library_.element(asked_[i].element);
       if (element.semantic != model::ElementClass::window || element.opening.outline.empty() || asked_[i].storey <= top)
         continue;
-      if (element.kind == "shop_window" && !out.kind.empty()) continue;
+      if (element.kind == kRuleGeometry || (element.kind == "shop_window" && !out.kind.empty())) continue;
       top = asked_[i].storey;
       out.kind = element.kind;
       out.width = width_of(element);
@@ -303,8 +308,47 @@ class FacadeBuilder {
     const grammar::Derivation derivation = grammar.deriver->run(shape, options);
     for (const grammar::Diagnostic& d : derivation.diagnostics)
       if (d.severity == grammar::Severity::error) tell(d.message);
+    std::optional<RuleGeometry> made;
+    if (grammar.makes_geometry) made = geometry_of(context, derivation.leaves);
     for (const grammar::Leaf& leaf : derivation.leaves)
       if (leaf.order) take(context, leaf);
+    if (made) take_geometry(context, std::move(*made));
+  }
+
+  /// What rules make themselves on a wall.
+  RuleGeometry geometry_of(const FacadeContext& context, std::span<const grammar::Leaf> leaves) {
+    const model::PartMaterial& usual = usual_materials_[static_cast<std::size_t>(model::ElementPart::wall)];
+    std::vector<KeptFree> portals;
+    for (const PassagePortal& m : portals_)
+      if (m.wall == context.segment.wall)
+        portals.push_back({m.left - kBesidePortal, m.right + kBesidePortal, m.high + kBesidePortal});
+    const auto painted = painted_.find(context.wall.face);
+    RuleGeometry made = rule_geometry(leaves, context.wall, portals, usual,
+                                      painted == painted_.end() ? nullptr : &painted->second, defaults_);
+    painted_.emplace(context.wall.face, made.ground);
+    return made;
+  }
+
+  void take_geometry(const FacadeContext& context, RuleGeometry made) {
+    yielding_ += made.yielding;
+    for (const auto& [what, count] : made.dropped) dropped_[what] += count;
+    for (const std::string& texture : made.textures)
+      tell("the image " + texture + " is not shown: what rules make has colours alone");
+    for (RuleBody& body : made.bodies) {
+      double low = 1e300;
+      for (const model::Point3& v : body.element.mesh.vertices) low = std::min(low, v.y + body.at.y);
+      const std::int32_t storey = storey_at(context, low);
+      const Point2 at = body.at;
+      asked_.push_back({context.segment.wall, library_.add_made(std::move(body.element), body.materials), at, storey});
+    }
+  }
+
+  /// The storey that a height in a wall belongs to.
+  static std::int32_t storey_at(const FacadeContext& context, double low) {
+    const double storey_height = context.part.attributes.storey_height.value;
+    const double above = low + context.wall.base - context.part.attributes.ground_height.value -
+                         context.part.attributes.plinth_height.value;
+    return storey_height > 0 ? std::max(0, static_cast<std::int32_t>(std::floor(above / storey_height + 0.25))) : 0;
   }
 
   /// What rules of a preset get from outside, the same for all walls of a building.
@@ -319,7 +363,7 @@ class FacadeBuilder {
     attributes.insert(attributes.end(), grammar.attributes.begin(), grammar.attributes.end());
     outside_ = grammar.deriver->outside_values(attributes);
     derive_options_.outside = &outside_;
-    derive_options_.orders_only = true;
+    derive_options_.orders_only = !grammar.makes_geometry;
     derive_options_.memo = &memo_;
     derive_options_.is_shared = &is_of_part;
   }
@@ -400,17 +444,17 @@ class FacadeBuilder {
       }
     }
     if (run) pieces = no_longer_than(kind->width.most, pieces);
-    const double storey_height = context.part.attributes.storey_height.value;
-    const double above = low + context.wall.base - context.part.attributes.ground_height.value -
-                         context.part.attributes.plinth_height.value;
-    const auto storey = storey_height > 0 ? static_cast<std::int32_t>(std::floor(above / storey_height + 0.25)) : 0;
+    const std::int32_t storey = storey_at(context, low);
     for (const auto& [from, to] : pieces) {
       const auto [made_width, made_height] = ElementLibrary::size(kind, to - from, height);
-      library_.ask(std::get<std::string>(order.arguments[0]), made_width, made_height, usual_materials_);
+      PartMaterials looks = usual_materials_;
+      if (const auto painted = painted_.find(context.wall.face); painted != painted_.end())
+        looks[static_cast<std::size_t>(model::ElementPart::wall)] = painted->second;
+      library_.ask(std::get<std::string>(order.arguments[0]), made_width, made_height, looks);
       complaints_.clear();
       library_.add_request(order, from == left, to == left + width, complaints_);
       for (const std::string& what : complaints_) tell(what);
-      place(context.segment.wall, {(from + to) / 2, low}, std::max(storey, 0));
+      place(context.segment.wall, {(from + to) / 2, low}, storey);
     }
   }
 
@@ -540,6 +584,32 @@ class FacadeBuilder {
     return out;
   }
 
+  bool is_sunk_geometry(const Asked& asked) const {
+    const model::Element& element = library_.element(asked.element);
+    return element.kind == kRuleGeometry && !element.opening.outline.empty();
+  }
+  /// What rules sank into the wall stands before it where the wall takes no opening: it is seen all the same.
+  void stand_before(Asked& asked) {
+    model::Element element = before_wall(library_.element(asked.element));
+    const PartMaterials materials = library_.materials(asked.element);
+    asked.element = library_.add_made(std::move(element), materials);
+    ++before_wall_;
+  }
+
+  /// Walls, and the reveals of their openings, look as rules say.
+  void paint(model::Detail& detail) const {
+    for (const auto& [face, look] : painted_) {
+      const auto set = [&](model::Face& f) {
+        if (f.kind == model::SurfaceKind::wall) f.material = look.material, f.colour = look.colour;
+      };
+      set(detail.solid.faces[face]);
+      for (const model::Opening& o : detail.openings) {
+        if (o.wall != face) continue;
+        for (std::uint32_t i = 0; i < o.reveal_count; ++i) set(detail.solid.faces[o.first_reveal + i]);
+      }
+    }
+  }
+
   void cut(BuildingPart& part, const std::vector<WallFrame>& walls) {
     model::Detail& detail = part.lod3;
     part.lod = 3;
@@ -548,6 +618,7 @@ class FacadeBuilder {
     if (asked_.empty() && !passages) {  // walls without openings are a facade, too
       detail.solid = *closed_.solid;
       detail.triangles = *closed_.triangles;
+      paint(detail);
       finish_told(part, 0);
       return;
     }
@@ -558,6 +629,11 @@ class FacadeBuilder {
       close_open(PortalState::not_valid);
       close_portals();
       asked_.insert(asked_.end(), rest.begin(), rest.end());
+      made = cut_all(walls);
+    }
+    if (!made && std::any_of(asked_.begin(), asked_.end(), [&](const Asked& a) { return is_sunk_geometry(a); })) {
+      for (Asked& a : asked_)
+        if (is_sunk_geometry(a)) stand_before(a);
       made = cut_all(walls);
     }
     std::vector<std::uint32_t> opening_of(asked_.size(), model::kNoOpening);
@@ -579,9 +655,12 @@ class FacadeBuilder {
       detail.solid = *closed_.solid;
       detail.triangles = *closed_.triangles;
     }
+    paint(detail);
     std::size_t left_out = 0;
     for (std::size_t i = 0; i < asked_.size(); ++i) {
-      if (refused[i]) {
+      if (refused[i] && is_sunk_geometry(asked_[i])) {
+        stand_before(asked_[i]);
+      } else if (refused[i]) {
         ++left_out;
         continue;
       }
@@ -596,6 +675,12 @@ class FacadeBuilder {
   /// \param left_out  of what was asked for
   void finish_told(BuildingPart& part, std::size_t left_out) {
     left_out += missed_doors_;
+    if (before_wall_ > 0) {
+      part.fallbacks.push_back(IssueCode::opening_left_out);
+      report_.add(part.osm, IssueCode::opening_left_out,
+                  fmt::format("{}: {} bodies of rules stand before the wall: it takes no opening there", part.id,
+                              before_wall_));
+    }
     if (left_out > 0) {
       part.fallbacks.push_back(IssueCode::opening_left_out);
       std::string what = fmt::format("{}: {} of {}", part.id, left_out, asked_.size() + missed_doors_);
@@ -610,6 +695,9 @@ class FacadeBuilder {
                   fmt::format("{}: a passage in a {} front: {}", part.id, model::name(m.front), name(m.state)));
     }
     for (const std::string& what : told_) report_.add(part.osm, IssueCode::grammar_error, part.id + ": " + what);
+    if (!dropped_.empty()) part.fallbacks.push_back(IssueCode::leaf_dropped);
+    for (const auto& [what, count] : dropped_)
+      report_.add(part.osm, IssueCode::leaf_dropped, fmt::format("{}: {} ({})", part.id, what, count));
   }
 
   /// Each complaint once a part.
@@ -640,9 +728,12 @@ class FacadeBuilder {
   std::vector<bool> checked_portals_;
   std::size_t portal_elements_ = 0;  ///< the first of asked_: what close_portals() put there
   std::size_t yielding_ = 0;         ///< elements that would stand in a portal
+  std::size_t before_wall_ = 0;      ///< sunk bodies of rules that got no opening
   std::size_t missed_doors_ = 0;     ///< those of them that are doors at mapped entrances
   std::set<std::string> told_;
-  PartMaterials usual_materials_;  ///< of the part at work
+  std::map<std::uint32_t, model::PartMaterial> painted_;  ///< by face: walls that rules gave another look
+  std::map<std::string, std::size_t> dropped_;            ///< leaves by "Symbol: why"
+  PartMaterials usual_materials_;                         ///< of the part at work
   std::vector<std::string> complaints_;
   std::vector<std::pair<double, double>> pieces_;
   const grammar::Deriver* roof_rules_ = nullptr;
@@ -673,7 +764,11 @@ void build_facades(model::Region& region, const GrammarLibrary& grammars, const 
       model::Building& building = region.buildings[b];
       if (!building.owned) continue;
       for (const std::string& order : unread_overrides(building))
-        stretch.made.report.add(building.osm, IssueCode::override_unmatched, order);
+        stretch.made.report.add(building.osm, IssueCode::parameter_unread, order);
+      for (const auto& [key, value] : building.preset_parameters)
+        if (!grammars.any_reads(key))
+          stretch.made.report.add(building.osm, IssueCode::parameter_unread,
+                                  fmt::format("{} = {}: no rule file of any preset asks for it", key, value));
       for (std::uint32_t p = 0; p < building.parts.size(); ++p)
         builder.build(building, building.parts[p], masses ? masses->find({static_cast<std::uint32_t>(b), p}) : nullptr);
     }

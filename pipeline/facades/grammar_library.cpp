@@ -1,14 +1,18 @@
 #include "pipeline/facades/grammar_library.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <set>
 #include <sstream>
 
 #include "pipeline/base/error.h"
 #include "pipeline/facades/facade_context.h"
+#include "pipeline/facades/rule_geometry.h"
 #include "pipeline/model/element.h"
 #include "styles/elements/make_element.h"
 
@@ -76,6 +80,7 @@ std::vector<grammar::ExtensionOperation> extension_operations() {
 struct GrammarLibrary::File {
   std::string path;
   grammar::Program program;
+  bool makes_geometry = false;
   std::optional<grammar::Deriver> deriver;
 };
 
@@ -87,7 +92,7 @@ GrammarLibrary::GrammarLibrary(const std::string& folder, std::span<const Preset
   grammar::CheckOptions check_options;
   check_options.extensions = extension_operations();
   for (const ContextAttribute& attribute : context_attributes()) check_options.context.emplace_back(attribute.name);
-  const auto deriver_of = [&](const std::string& name, const std::string& beside) {
+  const auto file_of = [&](const std::string& name, const std::string& beside) {
     std::filesystem::path place = std::filesystem::path(folder) / name;
     if (!beside.empty() && std::filesystem::exists(std::filesystem::path(beside) / name))
       place = std::filesystem::path(beside) / name;
@@ -106,17 +111,20 @@ GrammarLibrary::GrammarLibrary(const std::string& folder, std::span<const Preset
       if (read->program.modules.empty() && errors.empty()) errors = "it is not there, or cannot be read";
       if (!errors.empty()) throw base::InputError(path, "", errors, "`blockrand grammar check` tells more");
       read->deriver.emplace(read->program);
+      read->makes_geometry = makes_geometry(read->program);
       files_.push_back(std::move(read));
       file = files_.end() - 1;
     }
-    return &*(*file)->deriver;
+    return file->get();
   };
   for (const PresetGrammar& preset : presets) {
     Entry entry;
     entry.preset = preset.preset;
     entry.file = preset.file;
-    entry.deriver = deriver_of(preset.file, preset.beside);
-    if (!preset.roof_file.empty()) entry.roof = deriver_of(preset.roof_file, preset.beside);
+    const File* facade = file_of(preset.file, preset.beside);
+    entry.deriver = &*facade->deriver;
+    entry.makes_geometry = facade->makes_geometry;
+    if (!preset.roof_file.empty()) entry.roof = &*file_of(preset.roof_file, preset.beside)->deriver;
     for (const auto& [name, value] : preset.attributes) entry.attributes.emplace_back(name, value);
     entries_.push_back(std::move(entry));
   }
@@ -146,6 +154,39 @@ const GrammarLibrary::Entry* GrammarLibrary::find(std::string_view preset) const
   const auto place = std::lower_bound(entries_.begin(), entries_.end(), preset,
                                       [](const Entry& e, std::string_view name) { return e.preset < name; });
   return place != entries_.end() && place->preset == preset ? &*place : nullptr;
+}
+
+bool GrammarLibrary::reads(const Entry& entry, const std::string& parameter) {
+  const std::vector<std::pair<std::string, grammar::Value>> asked{{parameter, std::string()}};
+  const auto has = [&](const grammar::Deriver* deriver) {
+    if (!deriver) return false;
+    const std::vector<std::uint32_t> slots = deriver->outside_values(asked);
+    return std::ranges::any_of(slots, [](std::uint32_t from) { return from != grammar::kNone; });
+  };
+  return has(entry.deriver) || has(entry.roof);
+}
+
+bool GrammarLibrary::any_reads(const std::string& parameter) const {
+  return std::ranges::any_of(entries_, [&](const Entry& entry) { return reads(entry, parameter); });
+}
+
+std::vector<std::string> unread_parameters(const districts::RuleSets& book, const GrammarLibrary& grammars) {
+  std::vector<std::string> out;
+  std::map<std::string, bool> known;
+  for (const districts::RuleSet& set : book.sets)
+    for (const districts::Rule& rule : set.rules)
+      for (const auto& [key, value] : rule.parameters) {
+        const auto [at, is_new] = known.try_emplace(key, false);
+        if (is_new) at->second = grammars.any_reads(key);
+        std::string sentence = fmt::format("{}:{}: rule \"{}\": no rule file of any preset reads the parameter {}",
+                                           rule.file, rule.line, rule.name, key);
+        if (!at->second && std::ranges::find(out, sentence) == out.end()) out.push_back(std::move(sentence));
+      }
+  for (const GrammarLibrary::Entry& entry : grammars.entries())
+    for (const auto& [key, value] : entry.attributes)
+      if (!GrammarLibrary::reads(entry, key))
+        out.push_back(fmt::format("preset {}: its rule file {} reads no attribute {}", entry.preset, entry.file, key));
+  return out;
 }
 
 GrammarLibrary read_grammars(const std::string& configs, std::span<const districts::Preset> presets) {

@@ -37,6 +37,7 @@ class GrammarLibrary {
     std::string preset;
     std::string file;  ///< below the folder of grammars
     const grammar::Deriver* deriver = nullptr;
+    bool makes_geometry = false;  ///< its rules make more than elements and bare pieces of the wall (rule_geometry.h)
     const grammar::Deriver* roof = nullptr;                          ///< of the rules for roofs; null: there are none
     std::vector<std::pair<std::string, grammar::Value>> attributes;  ///< of both
   };
@@ -49,6 +50,10 @@ class GrammarLibrary {
 
   /// Null when the preset has no grammar.
   const Entry* find(std::string_view preset) const;
+  /// Whether a rule file of the preset has an attribute of that name, or one of any preset's does.
+  static bool reads(const Entry& entry, const std::string& parameter);
+  bool any_reads(const std::string& parameter) const;
+  const std::vector<Entry>& entries() const { return entries_; }
   bool empty() const { return entries_.empty(); }
   /// Paths of all files that were read, imports included, by name.
   std::vector<std::string> files() const;
@@ -64,5 +69,8 @@ class GrammarLibrary {
 /// The rule files of a rule book's presets, from configs/grammars.
 /// \throws base::InputError  with the errors of a file
 GrammarLibrary read_grammars(const std::string& configs, std::span<const districts::Preset> presets);
+
+/// Parameters of district rules and of presets that nothing reads, one sentence each with its place: PARAMETER_UNREAD.
+std::vector<std::string> unread_parameters(const districts::RuleSets& book, const GrammarLibrary& grammars);
 
 }  // namespace blockrand::facades

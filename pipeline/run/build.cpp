@@ -362,6 +362,9 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   if (!tile) {  // a tile alone does not see what lies elsewhere
     record.facts.areas = assigner.to_pin();
     for (const std::string& what : assigner.unanswered()) progress.warn(what);
+    if (inputs.grammars)
+      for (const std::string& what : facades::unread_parameters(inputs.rules.book, *inputs.grammars))
+        progress.warn("PARAMETER_UNREAD: " + what);
   }
 
   const std::vector<std::size_t> looked_into = shards_to_build(shards, tile);

@@ -26,7 +26,7 @@ void append_polygon_id(std::string& out, std::string_view id, std::size_t face);
 void append_detail_polygon_id(std::string& out, std::string_view id, std::size_t face);
 /// Appends "<id>_m<face>", the gml:id of the MultiSurface of a LoD3 wall and its reveals; of a body of its own "_m0".
 void append_wall_id(std::string& out, std::string_view id, std::size_t face);
-/// Whether face `face` of a LoD3 solid is, point for point, that of the LoD2 solid which it was made of.
+/// Whether face `face` of a LoD3 solid is, point for point and in its looks, that of the LoD2 solid which it was made of.
 bool is_shared_face(const model::Solid& lod2, const model::Solid& lod3, std::size_t face);
 /// The faces of the reveals of a wall's windows and doors, by face of the LoD2 solid.
 std::vector<std::vector<std::size_t>> reveals_by_wall(const model::Solid& lod2, const model::Detail& detail);

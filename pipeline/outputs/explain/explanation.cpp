@@ -363,10 +363,13 @@ class Writer {
       add_detail(region_, part.lod3, sum);
     }
     std::string text = fmt::format("rule file {} of preset {}", file, preset);
+    for (const BuildingPart& part : building.parts)
+      if (const std::string& own = part.attributes.preset.value; own != preset)
+        text += fmt::format(", {} of preset {} for {}", options_.rule_file(own), own, part.id);
     text += any ? ": " + detail_text(sum) : ": no body has facades";
-    const std::string noted =
-        said(building, {model::IssueCode::opening_left_out, model::IssueCode::facade_failed,
-                        model::IssueCode::grammar_error, model::IssueCode::roof_element_left_out});
+    const std::string noted = said(
+        building, {model::IssueCode::opening_left_out, model::IssueCode::facade_failed, model::IssueCode::grammar_error,
+                   model::IssueCode::leaf_dropped, model::IssueCode::roof_element_left_out});
     return noted.empty() ? text : text + ". " + noted;
   }
 

@@ -194,6 +194,7 @@ std::string_view consequence_words(std::string_view code) {
       {"OPENING_LEFT_OUT", "some windows or doors did not fit and are missing"},
       {"ROOF_ELEMENT_LEFT_OUT", "some chimneys, gables, dormers or roof windows did not fit and are missing"},
       {"GRAMMAR_ERROR", "a rule for its front failed, so something of the front is missing"},
+      {"LEAF_DROPPED", "something that the rules of its front made has no place in the model and is missing"},
       {"PLAN_SIMPLIFIED", "its outline was simplified, or no sound body could have been built"},
       {"REST_FAILED", "what its mapped parts leave free could not be built, so a piece may be missing"},
       {"ROOF_WITH_BAYS", "one roof over everything does not fit, so every bay has slopes of its own"},
@@ -224,6 +225,7 @@ std::string_view consequence_words(std::string_view code) {
       {"PARTS_INCOMPLETE", "its mapped parts leave some of the outline free, and that was built, too"},
       {"TERRAIN_MISSING", "the terrain has a hole here"},
       {"OVERRIDE_UNMATCHED", "an order of yours found nothing to act on"},
+      {"PARAMETER_UNREAD", "a parameter, tag or order for it is one that nothing reads"},
       // Of no interest to who looks at the model, or told by the corners that moved.
       {"SQUARED", " "},
       {"SHARED_WALL_MADE", " "},

@@ -1,0 +1,422 @@
+#include "pipeline/facades/rule_geometry.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "pipeline/facades/openings.h"
+#include "styles/grammar/shapes/mesh_triangles.h"
+#include "styles/grammar/shapes/scope.h"
+
+namespace blockrand::facades {
+namespace {
+
+using grammar::Leaf;
+using grammar::Vector3;
+using model::Point2;
+using model::Point3;
+
+/// m. What lies nearer to the wall's plane lies in it: rules count in floats of sizes.
+constexpr double kInPlane = 0.002;
+/// m that painted faces stand before the wall, so that nothing flickers (elements::kApart is 5 mm).
+constexpr double kPaint = 0.006;
+/// m of wall around openings, and a grid step.
+constexpr double kOpeningBorder = kOpeningClearance + 0.001;
+/// m across an opening.
+constexpr double kLeastSunk = 2 * kLeastOpening;
+/// m between sunk leaves that share an opening: between two there would be no room for both borders.
+constexpr double kShared = 2 * kOpeningBorder;
+/// m, deepest that geometry is sunk into a wall; elements reach no deeper (docs/elements.md).
+constexpr double kDeepest = 0.8;
+constexpr double kSmallest = 1e-6;  ///< m2, of a triangle
+
+/// A leaf in the wall's coordinates.
+struct WallLeaf {
+  std::string symbol;
+  model::PartMaterial look;
+  std::vector<std::vector<Point3>> polygons;  ///< convex, counter-clockwise from outside
+  Point3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+};
+
+Point3 point(Vector3 v) { return {v.x, v.y, v.z}; }
+
+/// A face without holes whose corners all turn the same way.
+bool is_convex(const grammar::Mesh& mesh, const grammar::MeshFace& face) {
+  if (face.loops.size() != 1 || face.loops[0].size() < 3) return false;
+  const auto& loop = face.loops[0];
+  Vector3 first{};
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vector3 a = mesh.vertices[loop[i].vertex], b = mesh.vertices[loop[(i + 1) % loop.size()].vertex],
+                  c = mesh.vertices[loop[(i + 2) % loop.size()].vertex];
+    const Vector3 turn = grammar::cross(b - a, c - b);
+    if (grammar::length(turn) < kSmallest) continue;
+    if (grammar::length(first) == 0)
+      first = turn;
+    else if (grammar::dot(first, turn) < 0)
+      return false;
+  }
+  return grammar::length(first) > 0 && loop.size() <= 8;
+}
+
+bool names_glass(std::string_view symbol) {
+  std::string lower;
+  for (const char c : symbol) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower.find("glass") != std::string::npos || lower.find("pane") == 0;
+}
+
+model::Colour colour_of(const grammar::Material& material) {
+  const auto byte = [&](std::size_t i) {
+    return static_cast<std::uint8_t>(std::clamp(std::floor(material.colour[i] * 255 + 0.5), 0.0, 255.0));
+  };
+  return {byte(0), byte(1), byte(2)};
+}
+
+WallLeaf in_wall(const Leaf& leaf, const model::PartMaterial& usual, const attributes::Defaults& defaults) {
+  WallLeaf out;
+  out.symbol = leaf.symbol.ends_with('.') ? leaf.symbol.substr(0, leaf.symbol.size() - 1) : leaf.symbol;
+  out.look = usual;
+  const grammar::Material* material = leaf.shape.material.get();
+  if (material && !(*material == grammar::Material{})) {
+    const bool coloured = material->colour != grammar::Material{}.colour;
+    if (coloured || material->colour_map.empty()) out.look.colour = colour_of(*material);
+    const char* name = material->colour[3] < 0.9 || names_glass(out.symbol) ? "glass"
+                       : material->metallic > 0.5                           ? "metal"
+                                                                            : "";
+    if (*name) out.look.material = static_cast<std::uint8_t>(std::max(defaults.material(name), 0));
+  }
+  const grammar::Mesh& mesh = *leaf.shape.mesh;
+  const grammar::Frame frame = grammar::scope_in_object(leaf.shape);
+  const auto placed = [&](std::uint32_t vertex) { return point(grammar::place(frame, mesh.vertices[vertex])); };
+  std::vector<bool> whole(mesh.faces.size());
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    if ((whole[f] = is_convex(mesh, mesh.faces[f]))) {
+      auto& polygon = out.polygons.emplace_back();
+      for (const grammar::Corner& c : mesh.faces[f].loops[0]) polygon.push_back(placed(c.vertex));
+    }
+  if (std::find(whole.begin(), whole.end(), false) != whole.end())
+    for (const grammar::MeshTriangle& t : grammar::triangles_of(mesh))
+      if (!whole[t.face]) out.polygons.push_back({placed(t.vertices[0]), placed(t.vertices[1]), placed(t.vertices[2])});
+  for (const auto& polygon : out.polygons)
+    for (const Point3& p : polygon) {
+      out.low = {std::min(out.low.x, p.x), std::min(out.low.y, p.y), std::min(out.low.z, p.z)};
+      out.high = {std::max(out.high.x, p.x), std::max(out.high.y, p.y), std::max(out.high.z, p.z)};
+    }
+  return out;
+}
+
+bool is_flat(const WallLeaf& l) { return l.low.z > -kInPlane && l.high.z < kInPlane; }
+bool is_sunk(const WallLeaf& l) { return l.low.z <= -kInPlane; }
+
+double area_of(const std::vector<Point3>& polygon) {
+  double twice = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Point3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    twice += a.x * b.y - b.x * a.y;
+  }
+  return std::fabs(twice) / 2;
+}
+
+/// The look that most of the leaves in the wall's plane have: the wall itself gets it, so that few are painted on it.
+model::PartMaterial ground_look(const std::vector<WallLeaf>& leaves, const model::PartMaterial& usual) {
+  std::vector<std::pair<model::PartMaterial, double>> areas{{usual, 0}};
+  for (const WallLeaf& l : leaves) {
+    if (!is_flat(l)) continue;
+    auto of = std::find_if(areas.begin(), areas.end(), [&](const auto& a) { return a.first == l.look; });
+    if (of == areas.end()) of = areas.insert(areas.end(), {l.look, 0});
+    for (const auto& polygon : l.polygons) of->second += area_of(polygon);
+  }
+  return std::max_element(areas.begin(), areas.end(), [](const auto& a, const auto& b) { return a.second < b.second; })
+      ->first;
+}
+
+/// Puts leaves together as one element. \param anchor  its origin in the wall's coordinates
+class BodyBuilder {
+ public:
+  /// \param wall  what reveals look like, which outputs add
+  BodyBuilder(Point2 anchor, std::string name, const model::PartMaterial& wall) : anchor_(anchor) {
+    body_.at = anchor;
+    body_.element.name = std::move(name);
+    body_.element.kind = kRuleGeometry;
+    body_.materials = {};
+    body_.materials[static_cast<std::size_t>(model::ElementPart::wall)] = wall;
+    used_[static_cast<std::size_t>(model::ElementPart::wall)] = true;
+  }
+
+  void add(std::span<const Point3> polygon, const model::PartMaterial& look, double forward = 0) {
+    std::vector<std::uint32_t> corners;
+    for (const Point3& p : polygon) {
+      const std::uint32_t at = vertex(model::snap(Point3{p.x - anchor_.x, p.y - anchor_.y, p.z + forward}));
+      if (corners.empty() || (corners.back() != at && corners.front() != at)) corners.push_back(at);
+    }
+    if (corners.size() < 3) return;  // thinner than the grid
+    model::ElementMesh& mesh = body_.element.mesh;
+    mesh.faces.push_back(
+        {static_cast<std::uint32_t>(mesh.indices.size()), static_cast<std::uint32_t>(corners.size()), part(look)});
+    mesh.indices.insert(mesh.indices.end(), corners.begin(), corners.end());
+  }
+  void count() { ++body_.leaves; }
+  model::Element& element() { return body_.element; }
+  RuleBody take() { return std::move(body_); }
+
+ private:
+  std::uint32_t vertex(Point3 p) {
+    auto& all = body_.element.mesh.vertices;
+    const auto found = std::find(all.begin(), all.end(), p);
+    if (found != all.end()) return static_cast<std::uint32_t>(found - all.begin());
+    all.push_back(p);
+    return static_cast<std::uint32_t>(all.size() - 1);
+  }
+
+  /// An element has as many looks as parts; what comes later takes the nearest.
+  model::ElementPart part(const model::PartMaterial& look) {
+    std::size_t nearest = 0;
+    int least = 1 << 30;
+    for (std::size_t i = 0; i < used_.size(); ++i) {
+      if (!used_[i]) continue;
+      const model::PartMaterial& other = body_.materials[i];
+      if (other == look) return static_cast<model::ElementPart>(i);
+      const int far = std::abs(other.colour.r - look.colour.r) + std::abs(other.colour.g - look.colour.g) +
+                      std::abs(other.colour.b - look.colour.b);
+      if (far < least) least = far, nearest = i;
+    }
+    for (std::size_t i = 0; i < used_.size(); ++i) {
+      if (used_[i]) continue;
+      used_[i] = true;
+      body_.materials[i] = look;
+      return static_cast<model::ElementPart>(i);
+    }
+    return static_cast<model::ElementPart>(nearest);
+  }
+
+  Point2 anchor_;
+  RuleBody body_;
+  std::array<bool, model::kElementPartCount> used_{};
+};
+
+/// Middle of the lower edge: equal leaves become equal elements wherever they stand.
+Point2 anchor_of(Point3 low, Point3 high) { return {(low.x + high.x) / 2, low.y}; }
+
+bool names_door(std::string_view symbol) {
+  std::string lower;
+  for (const char c : symbol) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower.find("door") != std::string::npos || lower.find("gate") != std::string::npos ||
+         lower.find("portal") != std::string::npos;
+}
+
+/// Leaves that lie in the wall, and what is before them, in one opening.
+RuleBody sunk_body(std::span<const WallLeaf* const> leaves, Point3 low, Point3 high, const model::PartMaterial& usual) {
+  const Point2 anchor = anchor_of(low, high);
+  const WallLeaf* main = leaves[0];
+  const auto area = [](const WallLeaf& l) { return (l.high.x - l.low.x) * (l.high.y - l.low.y); };
+  for (const WallLeaf* l : leaves)
+    if (area(*l) > area(*main) + kSmallest) main = l;
+  BodyBuilder builder(anchor, main->symbol, usual);
+  for (const WallLeaf* l : leaves) {
+    for (const auto& polygon : l->polygons) builder.add(polygon, l->look);
+    builder.count();
+  }
+  // Behind everything a wall: nobody looks into the house between leaves.
+  const double deep = -low.z;
+  const std::array<Point3, 4> back{Point3{low.x, low.y, -deep - kPaint}, Point3{high.x, low.y, -deep - kPaint},
+                                   Point3{high.x, high.y, -deep - kPaint}, Point3{low.x, high.y, -deep - kPaint}};
+  builder.add(back, usual);
+  model::Element& element = builder.element();
+  element.semantic = names_door(main->symbol) ? model::ElementClass::door : model::ElementClass::window;
+  element.opening.reveal = std::nearbyint(deep * model::kGridStepsPerMetre) / model::kGridStepsPerMetre;
+  return builder.take();
+}
+
+/// The rectangle that a body needs in the wall.
+void set_opening(RuleBody& body, Point3 low, Point3 high) {
+  const Point2 from = model::snap(Point2{low.x - body.at.x, low.y - body.at.y}),
+               to = model::snap(Point2{high.x - body.at.x, high.y - body.at.y});
+  body.element.opening.outline = {from, {to.x, from.y}, to, {from.x, to.y}};
+}
+
+bool meets(const KeptFree& portal, Point3 low, Point3 high) {
+  return low.x < portal.right && high.x > portal.left && low.y < portal.high;
+}
+
+/// What of a convex polygon lies where `side` is not negative; side is linear.
+template <class Side>
+std::vector<Point3> clipped(const std::vector<Point3>& polygon, Side&& side) {
+  std::vector<Point3> out;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Point3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double da = side(a), db = side(b);
+    if (da >= 0) out.push_back(a);
+    if ((da < 0) != (db < 0)) {
+      const double t = da / (da - db);
+      out.push_back({a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t});
+    }
+  }
+  return out.size() >= 3 ? out : std::vector<Point3>{};
+}
+
+/// Cuts off what would stand in a portal: left of it, right of it and above it remain.
+std::vector<std::vector<Point3>> without(const std::vector<std::vector<Point3>>& polygons, const KeptFree& portal) {
+  std::vector<std::vector<Point3>> out;
+  const auto keep = [&](std::vector<Point3> piece) {
+    if (!piece.empty()) out.push_back(std::move(piece));
+  };
+  for (const auto& polygon : polygons) {
+    keep(clipped(polygon, [&](const Point3& p) { return portal.left - p.x; }));
+    keep(clipped(polygon, [&](const Point3& p) { return p.x - portal.right; }));
+    keep(clipped(clipped(clipped(polygon, [&](const Point3& p) { return p.x - portal.left; }),
+                         [&](const Point3& p) { return portal.right - p.x; }),
+                 [&](const Point3& p) { return p.y - portal.high; }));
+  }
+  return out;
+}
+
+}  // namespace
+
+bool makes_geometry(const grammar::Program& program) {
+  // Operations that leave flat, bare pieces of a wall flat and bare; `t`, `s` and `set` by their arguments.
+  constexpr std::string_view kFlat[] = {
+      "split",  "splitArea",  "comp",        "NIL",       "print",          "report",   "label",
+      "center", "offset",     "setback",     "shapeL",    "shapeU",         "shapeO",   "cleanupGeometry",
+      "tag",    "deleteTags", "deleteHoles", "convexify", "innerRectangle", "innerRect"};
+  for (const grammar::Module& module : program.modules) {
+    const grammar::Unit& unit = *module.unit;
+    const auto is_nothing = [&](const grammar::ArgumentNode& a, double number, grammar::Mark mark) {
+      const grammar::Expression& e = unit.expressions[a.value];
+      return a.mark == mark && e.kind == grammar::ExpressionKind::number && e.number == number;
+    };
+    for (const grammar::Call& call : unit.calls) {
+      if (call.use == grammar::kNone || module.targets[call.use].kind != grammar::TargetKind::operation) continue;
+      const std::string& name = unit.name(call.name);
+      const auto arguments = grammar::Unit::slice(unit.arguments, call.arguments);
+      if (std::find(std::begin(kFlat), std::end(kFlat), name) != std::end(kFlat)) continue;
+      if ((name == "t" || name == "translate") && arguments.size() == 3 &&
+          is_nothing(arguments[2], 0, grammar::Mark::plain))
+        continue;
+      if (name == "s" && arguments.size() == 3 &&
+          (is_nothing(arguments[2], 0, grammar::Mark::plain) || is_nothing(arguments[2], 1, grammar::Mark::relative)))
+        continue;
+      if (name == "set" && !arguments.empty()) {
+        const grammar::Expression& what = unit.expressions[arguments[0].value];
+        if (what.kind == grammar::ExpressionKind::name && !unit.name(what.name).starts_with("material")) continue;
+      }
+      return true;
+    }
+  }
+  return false;
+}
+
+model::Element before_wall(const model::Element& sunk) {
+  model::Element out = sunk;
+  out.semantic = model::ElementClass::installation;
+  for (Point3& v : out.mesh.vertices) v.z = model::snap(v.z + sunk.opening.reveal + 2 * kPaint);
+  out.opening = {};
+  return out;
+}
+
+RuleGeometry rule_geometry(std::span<const Leaf> leaves, const WallFrame& wall, std::span<const KeptFree> portals,
+                           const model::PartMaterial& usual, const model::PartMaterial* painted,
+                           const attributes::Defaults& defaults) {
+  RuleGeometry out;
+  std::vector<WallLeaf> made;
+  for (const Leaf& leaf : leaves) {
+    if (leaf.order || !leaf.shape.mesh) continue;
+    WallLeaf l = in_wall(leaf, usual, defaults);
+    if (l.polygons.empty()) continue;
+    if (leaf.shape.material && !leaf.shape.material->colour_map.empty() &&
+        std::find(out.textures.begin(), out.textures.end(), leaf.shape.material->colour_map) == out.textures.end())
+      out.textures.push_back(leaf.shape.material->colour_map);
+    if (!std::isfinite(l.low.x + l.low.y + l.low.z + l.high.x + l.high.y + l.high.z)) {
+      ++out.dropped[l.symbol + ": its place is no number"];
+    } else if (l.low.z < -kDeepest) {
+      ++out.dropped[fmt::format("{}: it lies deeper than {:g} m in the wall", l.symbol, kDeepest)];
+    } else {
+      made.push_back(std::move(l));
+    }
+  }
+  const model::PartMaterial shown = out.ground = painted ? *painted : ground_look(made, usual);
+  const auto is_bare = [&](const WallLeaf& l) { return is_flat(l) && l.look == shown; };
+  out.bare = static_cast<std::size_t>(std::count_if(made.begin(), made.end(), is_bare));
+  // Sunk leaves whose boxes meet share an opening.
+  std::vector<std::size_t> sunk;
+  for (std::size_t i = 0; i < made.size(); ++i)
+    if (is_sunk(made[i])) sunk.push_back(i);
+  struct Box {
+    Point3 low, high;
+    std::vector<const WallLeaf*> leaves;
+  };
+  std::vector<Box> boxes;
+  for (const std::size_t i : sunk) {
+    Box box{made[i].low, made[i].high, {&made[i]}};
+    for (bool grew = true; grew;) {
+      grew = false;
+      for (std::size_t b = 0; b < boxes.size(); ++b) {
+        const Box& other = boxes[b];
+        if (other.low.x > box.high.x + kShared || other.high.x < box.low.x - kShared ||
+            other.low.y > box.high.y + kShared || other.high.y < box.low.y - kShared)
+          continue;
+        box.low = {std::min(box.low.x, other.low.x), std::min(box.low.y, other.low.y),
+                   std::min(box.low.z, other.low.z)};
+        box.high = {std::max(box.high.x, other.high.x), std::max(box.high.y, other.high.y),
+                    std::max(box.high.z, other.high.z)};
+        box.leaves.insert(box.leaves.begin(), other.leaves.begin(), other.leaves.end());
+        boxes.erase(boxes.begin() + static_cast<std::ptrdiff_t>(b));
+        grew = true;
+        break;
+      }
+    }
+    boxes.push_back(std::move(box));
+  }
+  std::vector<bool> in_opening(made.size(), false);
+  for (Box& box : boxes) {
+    // What the wall shows before the opening goes along: it would be cut away.
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      const WallLeaf& l = made[i];
+      if (is_sunk(l) || in_opening[i]) continue;
+      if (l.low.x < box.low.x - kInPlane || l.high.x > box.high.x + kInPlane || l.low.y < box.low.y - kInPlane ||
+          l.high.y > box.high.y + kInPlane)
+        continue;
+      in_opening[i] = true;
+      box.leaves.push_back(&l);
+    }
+    // Openings keep a border of wall.
+    Point3 low = box.low, high = box.high;
+    low.x = std::max(low.x, kOpeningBorder);
+    high.x = std::min(high.x, wall.length - kOpeningBorder);
+    low.y = std::max(low.y, kOpeningBorder);
+    high.y = std::min(high.y, wall.height - kOpeningBorder);
+    if (std::any_of(portals.begin(), portals.end(), [&](const KeptFree& p) { return meets(p, box.low, box.high); })) {
+      ++out.yielding;
+      continue;
+    }
+    RuleBody body = sunk_body(box.leaves, box.low, box.high, shown);
+    if (high.x - low.x < kLeastSunk || high.y - low.y < kLeastSunk)
+      body.element = before_wall(body.element);  // too small for an opening
+    else
+      set_opening(body, low, high);
+    if (!body.element.mesh.faces.empty()) out.bodies.push_back(std::move(body));
+  }
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    WallLeaf& l = made[i];
+    if (is_sunk(l) || in_opening[i] || is_bare(l)) continue;
+    for (const KeptFree& portal : portals)
+      if (meets(portal, l.low, l.high)) l.polygons = without(l.polygons, portal);
+    if (l.polygons.empty()) {
+      ++out.yielding;
+      continue;
+    }
+    BodyBuilder builder(anchor_of(l.low, l.high), l.symbol, shown);
+    for (const auto& polygon : l.polygons) builder.add(polygon, l.look, is_flat(l) ? kPaint : 0);
+    builder.count();
+    // A leaf thinner than the grid shows nothing.
+    if (RuleBody body = builder.take(); !body.element.mesh.faces.empty()) out.bodies.push_back(std::move(body));
+  }
+  return out;
+}
+
+}  // namespace blockrand::facades
