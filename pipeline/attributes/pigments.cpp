@@ -12,7 +12,9 @@ using model::Colour;
 /// Steps between fresh and weathered and between dark and light: colours are materials in some outputs, so few are enough.
 constexpr int kWeatheringSteps = 4, kToneSteps = 3;
 
-std::uint8_t channel(double value) { return static_cast<std::uint8_t>(std::clamp(std::floor(value + 0.5), 0.0, 255.0)); }
+std::uint8_t channel(double value) {
+  return static_cast<std::uint8_t>(std::clamp(std::floor(value + 0.5), 0.0, 255.0));
+}
 
 std::optional<Colour> colour(TomlTable& table, std::string_view key) {
   const auto text = table.text(key);
@@ -70,7 +72,9 @@ Colour Pigments::weathered(Colour drawn, std::uint64_t bits) const {
   const int light = static_cast<int>(bits / kWeatheringSteps % kToneSteps) - kToneSteps / 2;
   const double share = d.least_weathered + (d.most_weathered - d.least_weathered) * dirty / (kWeatheringSteps - 1);
   const double tone = 1 + d.tone * light / (kToneSteps / 2);
-  const auto aged = [&](std::uint8_t fresh, std::uint8_t dirt) { return channel((fresh + (dirt - fresh) * share) * tone); };
+  const auto aged = [&](std::uint8_t fresh, std::uint8_t dirt) {
+    return channel((fresh + (dirt - fresh) * share) * tone);
+  };
   return {aged(drawn.r, d.dirt.r), aged(drawn.g, d.dirt.g), aged(drawn.b, d.dirt.b)};
 }
 
@@ -95,7 +99,8 @@ Pigments read_pigments(TomlTable& file, const std::function<int(std::string_view
     }
     table.finish();
     const auto [at, is_new] = out.by_screen_colour.emplace(screen, std::move(pigment));
-    if (!is_new) table.fail("screen", "`" + at->second.name + "` has this colour, too", "Give each word a colour of its own");
+    if (!is_new)
+      table.fail("screen", "`" + at->second.name + "` has this colour, too", "Give each word a colour of its own");
   }
   pigments->finish();
   return out;

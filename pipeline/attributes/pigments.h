@@ -16,14 +16,14 @@ namespace blockrand::attributes {
 
 /// A word for a colour, and what paint, clay, metal or stone of that name looks like.
 struct Pigment {
-  std::string name;                                  ///< "red"
+  std::string name;                                   ///< "red"
   std::map<std::uint8_t, model::Colour> on_material;  ///< by index of the material class
-  model::Colour elsewhere;                           ///< on all other materials
+  model::Colour elsewhere;                            ///< on all other materials
 };
 
 /// How roofs whose colour is drawn look after some decades.
 struct DrawnRoofs {
-  double alike = 0;                            ///< share of the roofs of a block that have the block's colour of their palette
+  double alike = 0;  ///< share of the roofs of a block that have the block's colour of their palette
   double least_weathered = 0, most_weathered = 0;  ///< share of `dirt` in their colour
   model::Colour dirt;
   double tone = 0;  ///< share by which they are lighter or darker
@@ -32,8 +32,9 @@ struct DrawnRoofs {
 /// Read from configs/materials/materials.toml.
 struct Pigments {
   std::map<model::Colour, Pigment> by_screen_colour;  ///< by the colour that CSS gives the word
-  std::vector<double> most_saturated;                 ///< HSV saturation of words without a pigment and of drawn walls, by material class
-  std::optional<DrawnRoofs> drawn_roofs;              ///< none: drawn for each building, as the palette has it
+  std::vector<double>
+      most_saturated;  ///< HSV saturation of words without a pigment and of drawn walls, by material class
+  std::optional<DrawnRoofs> drawn_roofs;  ///< none: drawn for each building, as the palette has it
 
   /// What a word means on a material. \param screen  the colour that CSS gives the word
   model::Colour on_material(model::Colour screen, std::uint8_t material) const;

@@ -305,6 +305,8 @@ const std::vector<ContextAttribute> kAttributes = {
      [](const C& c) -> Value { return static_cast<double>(storey_count(c)); }},
     {"storey.heights", "m", "by storey: floor to floor, as ordered; the others even",
      [](const C& c) -> Value { return numbers(storey_heights(c)); }},
+    {"storey.materials", "", "by storey: material class as ordered; empty: nothing",
+     [](const C& c) -> Value { return texts(by_storey(c, "material")); }},
     {"storey.ordered", "", "storeys whose height is ordered",
      [](const C& c) -> Value {
        const auto overrides = by_storey(c, "height");
@@ -335,18 +337,26 @@ bool is_of_part(std::string_view name) {
   return name.starts_with("building.") || name.starts_with("roof.") || name.starts_with("storey.");
 }
 
+std::string edge_order(const FacadeContext& context, std::string_view key) { return overridden_edge(context, key); }
+
 std::vector<std::string> unread_overrides(const model::Building& building) {
   using model::DetailKind;
-  // What storey.windows, bay.windows and bay.uses read.
+  // What storey.*, bay.* and edge.kind read, and what paints walls.
   constexpr std::pair<DetailKind, std::string_view> kHeard[] = {{DetailKind::storey, "parameters.window"},
+                                                                {DetailKind::storey, "height"},
+                                                                {DetailKind::storey, "use"},
+                                                                {DetailKind::storey, "colour"},
+                                                                {DetailKind::storey, "material"},
                                                                 {DetailKind::bay, "parameters.window"},
-                                                                {DetailKind::bay, "parameters.use"}};
+                                                                {DetailKind::bay, "parameters.use"},
+                                                                {DetailKind::edge, "kind"},
+                                                                {DetailKind::edge, "colour"},
+                                                                {DetailKind::edge, "material"}};
   std::vector<std::string> out;
   for (const model::DetailOverride& d : building.detail_overrides)
     for (const auto& [key, value] : d.values)
-      if (key.starts_with("parameters.") &&
-          std::find(std::begin(kHeard), std::end(kHeard), std::pair(d.kind, std::string_view(key))) == std::end(kHeard))
-        out.push_back(d.from + ": rules ask for no " + key + " of a " + std::string(model::name(d.kind)));
+      if (std::find(std::begin(kHeard), std::end(kHeard), std::pair(d.kind, std::string_view(key))) == std::end(kHeard))
+        out.push_back(d.from + ": nothing reads " + key + " of a " + std::string(model::name(d.kind)));
   return out;
 }
 

@@ -47,8 +47,10 @@ bool is_of_part(std::string_view name);
 /// m from the left end of the wall segment to each mapped entrance, in order, each place once.
 std::vector<double> entrance_places(const FacadeContext& context);
 
-/// Orders of storeys, edges and bays that no rule file can ask for: parameters without a name in the list above. One
-/// sentence each, with the place of the order.
+/// What is ordered of an edge that the wall segment belongs to; empty: nothing.
+std::string edge_order(const FacadeContext& context, std::string_view key);
+
+/// Orders of storeys, edges and bays that nothing reads. One sentence each, with the place of the order.
 std::vector<std::string> unread_overrides(const model::Building& building);
 
 }  // namespace blockrand::facades

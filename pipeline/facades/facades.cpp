@@ -25,6 +25,7 @@
 #include "pipeline/facades/roof_elements.h"
 #include "pipeline/facades/rule_geometry.h"
 #include "pipeline/facades/wall_corners.h"
+#include "pipeline/facades/wall_paint.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/triangulate.h"
@@ -73,6 +74,7 @@ class FacadeBuilder {
     told_.clear();
     dropped_.clear();
     painted_.clear();
+    paint_orders_.clear();
     usual_materials_ = library_.usual_materials(part);
     const std::uint64_t seed = base::random_bits(options_.seed, building.osm.key(), "facades");
     const std::uint64_t row =
@@ -94,6 +96,7 @@ class FacadeBuilder {
         continue;
       derive_segment(*grammar, {building, part, walls[segment.wall], segment, eaves, nullptr, &defaults_}, seed, row);
     }
+    tell_unpainted(building, part, grammar->file);
     furnished_.reset();
     if (mass && grammar->roof && main_body(building) == &part) {
       furnish(*grammar, building, part, *mass, walls, segments, eaves, seed, row);
@@ -308,11 +311,85 @@ class FacadeBuilder {
     const grammar::Derivation derivation = grammar.deriver->run(shape, options);
     for (const grammar::Diagnostic& d : derivation.diagnostics)
       if (d.severity == grammar::Severity::error) tell(d.message);
+    const std::string colour = edge_order(context, "colour"), material = edge_order(context, "material");
+    if (!colour.empty() || !material.empty())
+      add_paint(context, context.segment.from, context.segment.to, 0, wall.height, colour, material, "edge");
     std::optional<RuleGeometry> made;
     if (grammar.makes_geometry) made = geometry_of(context, derivation.leaves);
     for (const grammar::Leaf& leaf : derivation.leaves)
       if (leaf.order) take(context, leaf);
     if (made) take_geometry(context, std::move(*made));
+  }
+
+  /// Storeys whose looks are ordered and that the rules painted nowhere.
+  void tell_unpainted(const model::Building& building, const BuildingPart& part, const std::string& file) {
+    for (const model::DetailOverride& d : building.detail_overrides) {
+      if (d.kind != model::DetailKind::storey || (d.body != part.id && d.body != building.id())) continue;
+      const bool asked = std::ranges::any_of(
+          d.values, [](const auto& value) { return value.first == "colour" || value.first == "material"; });
+      const std::string name = "storey " + d.name;
+      if (asked && std::ranges::none_of(paint_orders_, [&](const PaintOrder& o) { return o.name == name; }))
+        report_.add(part.osm, IssueCode::parameter_unread,
+                    fmt::format("{}: {} paints no {} of {}", d.from, file, name, part.id));
+    }
+  }
+
+  /// `blockrand.paint`: how the wall looks where the leaf's shape is.
+  void note_paint(const FacadeContext& context, const grammar::Leaf& leaf) {
+    std::string colour, material, storey;
+    const auto& arguments = leaf.order->arguments;
+    for (std::size_t i = 1; i + 1 < arguments.size(); i += 2) {
+      const auto *name = std::get_if<std::string>(&arguments[i]), *value = std::get_if<std::string>(&arguments[i + 1]);
+      if (name && value) (*name == "colour" ? colour : material) = *value;
+      if (const auto* number = std::get_if<double>(&arguments[i + 1])) storey = fmt::format("storey {:g}", *number);
+    }
+    if (colour.empty() && material.empty()) return;
+    const grammar::Frame frame = grammar::scope_in_object(leaf.shape);
+    add_paint(context, frame.origin.x, frame.origin.x + leaf.shape.size.x, frame.origin.y,
+              frame.origin.y + leaf.shape.size.y, colour, material, std::move(storey));
+  }
+
+  void add_paint(const FacadeContext& context, double left, double right, double low, double high,
+                 const std::string& colour, const std::string& material, std::string name) {
+    PaintOrder order{context.segment.wall, left, right, low, high, {}, std::move(name)};
+    order.look = usual_materials_[static_cast<std::size_t>(model::ElementPart::wall)];
+    if (const auto ordered = model::colour_of_hex(colour))
+      order.look.colour = *ordered;
+    else if (!colour.empty())
+      tell(colour + " is no colour: #rrggbb");
+    if (const int index = defaults_.material(material); index >= 0) {
+      order.look.material = static_cast<std::uint8_t>(index);
+      // A material alone has its own colour.
+      if (colour.empty()) order.look.colour = defaults_.materials[static_cast<std::size_t>(index)].colour;
+    } else if (!material.empty()) {
+      tell(material + " is no material class");
+    }
+    paint_orders_.push_back(std::move(order));
+  }
+
+  /// Layers of paint round the openings. \param opened  by asked_: has an opening
+  void apply_paint(model::Detail& detail, const std::vector<WallFrame>& walls, const std::vector<bool>& opened) {
+    std::vector<int> layers(walls.size(), 0);
+    for (const PaintOrder& order : paint_orders_) {
+      std::vector<std::vector<Point2>> openings;
+      for (std::size_t i = 0; i < opened.size(); ++i) {
+        if (!opened[i] || asked_[i].wall != order.wall) continue;
+        auto& outline = openings.emplace_back();
+        for (const Point2& p : library_.element(asked_[i].element).opening.outline)
+          outline.push_back({p.x + asked_[i].at.x, p.y + asked_[i].at.y});
+      }
+      for (const PassagePortal& m : portals_)
+        if (m.wall == order.wall && m.state == PortalState::open) openings.push_back(m.outline());
+      auto paint = wall_paint(order, walls[order.wall], openings, layers[order.wall]);
+      if (!paint) continue;
+      ++layers[order.wall];
+      PartMaterials looks{};
+      looks[static_cast<std::size_t>(model::ElementPart::wall)] = order.look;
+      const std::uint32_t element = library_.add_made(std::move(paint->element), looks);
+      const WallFrame& wall = walls[order.wall];
+      detail.placements.push_back(
+          {element, model::snap(wall.at(paint->at)), wall.along, model::kNoOpening, wall.face, 0});
+    }
   }
 
   /// What rules make themselves on a wall.
@@ -407,6 +484,7 @@ class FacadeBuilder {
   /// the wall are interrupted, the rest is left out.
   void take(const FacadeContext& context, const grammar::Leaf& leaf) {
     const grammar::ElementRequest& order = *leaf.order;
+    if (order.name == kPaintOperation) return note_paint(context, leaf);
     if (order.arguments.empty() || !std::holds_alternative<std::string>(order.arguments[0])) {
       tell("blockrand." + order.name + " wants the name of an element first");
       return;
@@ -619,6 +697,7 @@ class FacadeBuilder {
       detail.solid = *closed_.solid;
       detail.triangles = *closed_.triangles;
       paint(detail);
+      apply_paint(detail, walls, {});
       finish_told(part, 0);
       return;
     }
@@ -668,6 +747,9 @@ class FacadeBuilder {
       detail.placements.push_back({asked_[i].element, model::snap(wall.at(asked_[i].at)), wall.along, opening_of[i],
                                    wall.face, asked_[i].storey});
     }
+    std::vector<bool> opened(asked_.size());
+    for (std::size_t i = 0; i < asked_.size(); ++i) opened[i] = opening_of[i] != model::kNoOpening;
+    apply_paint(detail, walls, opened);
     finish_told(part, left_out);
   }
 
@@ -731,6 +813,7 @@ class FacadeBuilder {
   std::size_t before_wall_ = 0;      ///< sunk bodies of rules that got no opening
   std::size_t missed_doors_ = 0;     ///< those of them that are doors at mapped entrances
   std::set<std::string> told_;
+  std::vector<PaintOrder> paint_orders_;                  ///< of the part at work
   std::map<std::uint32_t, model::PartMaterial> painted_;  ///< by face: walls that rules gave another look
   std::map<std::string, std::size_t> dropped_;            ///< leaves by "Symbol: why"
   PartMaterials usual_materials_;                         ///< of the part at work

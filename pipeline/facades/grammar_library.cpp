@@ -74,6 +74,10 @@ std::vector<grammar::ExtensionOperation> extension_operations() {
     }
   }
   for (std::size_t i = 0; i < out.size(); ++i) out[i].parameters.assign(parameters[i].begin(), parameters[i].end());
+  grammar::ExtensionOperation& paint = out.emplace_back();
+  paint.name = kPaintOperation;
+  paint.kinds = {"wall"};
+  paint.parameters = {"colour", "material", "storey"};
   return out;
 }
 

@@ -14,6 +14,10 @@
 
 namespace blockrand::facades {
 
+/// `blockrand.paint("wall", "storey", 2, "colour", "#rrggbb", "material", "brick")`: how the wall looks where the shape is; empty texts
+/// leave it as it is. The storey names the layer.
+inline constexpr std::string_view kPaintOperation = "paint";
+
 /// What our own operations are called in rule files: `blockrand.window("double_casement", "head", "segmental")`. The
 /// first argument is a kind of elements::element_kinds(), pairs of parameter and value follow: those of the kind, and
 /// colours of parts ("frame_colour", "#f6f6f6"; see model::ElementPart).

@@ -341,7 +341,6 @@ RuleGeometry rule_geometry(std::span<const Leaf> leaves, const WallFrame& wall, 
   }
   const model::PartMaterial shown = out.ground = painted ? *painted : ground_look(made, usual);
   const auto is_bare = [&](const WallLeaf& l) { return is_flat(l) && l.look == shown; };
-  out.bare = static_cast<std::size_t>(std::count_if(made.begin(), made.end(), is_bare));
   // Sunk leaves whose boxes meet share an opening.
   std::vector<std::size_t> sunk;
   for (std::size_t i = 0; i < made.size(); ++i)
@@ -377,7 +376,7 @@ RuleGeometry rule_geometry(std::span<const Leaf> leaves, const WallFrame& wall, 
     // What the wall shows before the opening goes along: it would be cut away.
     for (std::size_t i = 0; i < made.size(); ++i) {
       const WallLeaf& l = made[i];
-      if (is_sunk(l) || in_opening[i]) continue;
+      if (!is_flat(l) || in_opening[i]) continue;
       if (l.low.x < box.low.x - kInPlane || l.high.x > box.high.x + kInPlane || l.low.y < box.low.y - kInPlane ||
           l.high.y > box.high.y + kInPlane)
         continue;
@@ -416,6 +415,8 @@ RuleGeometry rule_geometry(std::span<const Leaf> leaves, const WallFrame& wall, 
     // A leaf thinner than the grid shows nothing.
     if (RuleBody body = builder.take(); !body.element.mesh.faces.empty()) out.bodies.push_back(std::move(body));
   }
+  for (std::size_t i = 0; i < made.size(); ++i)
+    if (is_bare(made[i]) && !in_opening[i]) ++out.bare;
   return out;
 }
 

@@ -364,7 +364,7 @@ class Writer {
     }
     std::string text = fmt::format("rule file {} of preset {}", file, preset);
     for (const BuildingPart& part : building.parts)
-      if (const std::string& own = part.attributes.preset.value; own != preset)
+      if (const std::string& own = part.attributes.preset.value; !own.empty() && own != preset)
         text += fmt::format(", {} of preset {} for {}", options_.rule_file(own), own, part.id);
     text += any ? ": " + detail_text(sum) : ": no body has facades";
     const std::string noted = said(

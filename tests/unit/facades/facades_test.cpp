@@ -74,7 +74,7 @@ model::Region region_of(const House& house, const std::string& preset, std::int6
   a.preset.value = preset;
   a.use.value = a.ground_floor_use.value = "apartments";
   a.wall_material.value = "plaster";
-  a.wall_colour.value = {220, 210, 180};
+  a.wall_colour.value = a.shown_wall_colour = {220, 210, 180};
   b.attributes = a;
   model::BuildingPart part;
   part.id = b.id();
@@ -380,9 +380,10 @@ TEST(Facades, ShopsAndOrdersAreKept) {
        "o.toml:7"},
       {unheard.buildings[0].id(), model::DetailKind::storey, "1", {{"parameters.window", "none"}}, "o.toml:9"}};
   build_facades(unheard, shipped(), attributes::Defaults{}, {42});
-  ASSERT_EQ(unheard.report.rows.size(), 1u);
-  EXPECT_EQ(unheard.report.rows[0].code, model::IssueCode::override_unmatched);
-  EXPECT_EQ(unheard.report.rows[0].detail, "o.toml:7: rules ask for no parameters.widnow of a bay");
+  ASSERT_EQ(unheard.report.rows.size(), 2u);
+  for (const model::ReportRow& row : unheard.report.rows) EXPECT_EQ(row.code, model::IssueCode::parameter_unread);
+  EXPECT_EQ(unheard.report.rows[0].detail, "o.toml:7: nothing reads parameters.widnow of a bay");
+  EXPECT_EQ(unheard.report.rows[1].detail, "o.toml:7: nothing reads width of a bay");
   // A high ground floor moves the windows above it up; a window kind of one bay changes its column.
   model::Region before = region_of(house, "gruenderzeit", 79), after = region_of(house, "gruenderzeit", 79);
   after.buildings[0].detail_overrides.push_back(
@@ -759,8 +760,8 @@ void break_solid(model::BuildingPart& part) {
 
 TEST(Facades, WallsOfASolidThatTakesNoOpeningsStayClosedAndEverythingIsTold) {
   HouseWithPassage house(true);
-  house.region.buildings[0].attributes.preset.value = "own";
   model::BuildingPart& part = house.region.buildings[0].parts[0];
+  part.attributes.preset.value = "own";
   break_solid(part);
   const GrammarLibrary book =
       own_book("Facade --> split(x){ ~1 : Marked | ~1 : Odd }\n" + kOneWindow +
