@@ -3,16 +3,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pipeline/base/error.h"
 #include "pipeline/base/version.h"
 #include "pipeline/cli/exit_codes.h"
+#include "pipeline/cli/grammar_walls.h"
 #include "pipeline/cli/rule_files.h"
 #include "pipeline/outputs/gltf/triangle_glb.h"
 #include "styles/grammar/evaluation/colour_text.h"
@@ -25,6 +30,9 @@
 
 namespace blockrand::cli {
 namespace {
+
+/// Of a house for --edge and --block.
+constexpr double kUsualStoreys = 4;
 
 /// \returns the number of errors
 std::size_t print_diagnostics(const std::vector<grammar::Diagnostic>& diagnostics, const grammar::Program& program,
@@ -49,10 +57,17 @@ void append_triangles(const grammar::Shape& shape, std::vector<model::Point3>& o
     }
 }
 
-std::string glb_of(const grammar::Derivation& result) {
-  std::map<std::string, outputs::ColouredTriangles> groups;
+/// Leaves by colour. \param house  whose walls they are: leaves that order elements are left out, those without looks are its wall
+void add_leaves(const grammar::Derivation& result, const TrialHouse* house,
+                std::map<std::string, outputs::ColouredTriangles>& groups) {
+  grammar::Material bare;
+  if (house) {
+    const model::Colour c = house->part().attributes.shown_wall_colour;
+    bare.colour = {c.r / 255.0, c.g / 255.0, c.b / 255.0, 1};
+  }
   for (const grammar::Leaf& leaf : result.leaves) {
-    const grammar::Material material = leaf.shape.material != nullptr ? *leaf.shape.material : grammar::Material();
+    if (house && leaf.order) continue;
+    const grammar::Material material = leaf.shape.material != nullptr ? *leaf.shape.material : bare;
     const std::string name = grammar::colour_text(material.colour, true);
     outputs::ColouredTriangles& group = groups[name];
     group.name = name;
@@ -61,7 +76,19 @@ std::string glb_of(const grammar::Derivation& result) {
     group.metallic = material.metallic;
     append_triangles(leaf.shape, group.corners);
   }
+}
+
+/// \param house  whose walls the derivations began with; null: elements are their leaves' faces
+std::string glb_of(std::span<const grammar::Derivation> results, const TrialHouse* house,
+                   std::vector<std::string>& complaints) {
+  std::map<std::string, outputs::ColouredTriangles> groups;
   std::vector<outputs::ColouredTriangles> all;
+  for (const grammar::Derivation& result : results) {
+    add_leaves(result, house, groups);
+    if (!house) continue;
+    for (outputs::ColouredTriangles& group : element_triangles(result, *house, complaints))
+      all.push_back(std::move(group));
+  }
   for (auto& [name, group] : groups) all.push_back(std::move(group));
   return outputs::write_triangle_glb(all, "blockrand " BLOCKRAND_VERSION, /*y_up=*/true);
 }
@@ -84,6 +111,22 @@ void print_result(const grammar::Derivation& result, bool tree) {
   for (const grammar::Leaf& leaf : result.leaves) ++symbols[leaf.symbol];
   fmt::print("{} leaves of {} shapes\n", result.leaves.size(), result.shapes);
   for (const auto& [symbol, count] : symbols) fmt::print("  {:<32}{:>8}\n", symbol, count);
+}
+
+/// The house whose walls --edge and --block ask for.
+std::optional<TrialHouse> trial_house(const settings::Settings& s, double width, double depth) {
+  if (s.rule_edge.empty() && !s.rule_block) return std::nullopt;
+  constexpr std::pair<const char*, model::WallSegmentKind> kKinds[] = {{"street", model::WallSegmentKind::street},
+                                                                       {"courtyard", model::WallSegmentKind::courtyard},
+                                                                       {"side", model::WallSegmentKind::side},
+                                                                       {"passage", model::WallSegmentKind::passage}};
+  const std::string kind = s.rule_edge.empty() ? "street" : s.rule_edge;
+  const auto known = std::ranges::find(kKinds, kind, [](const auto& k) { return std::string(k.first); });
+  if (known == std::end(kKinds))
+    throw base::UsageError("--edge: '" + kind + "' is unknown. Known: street, courtyard, side, passage.");
+  if (width < 1 || depth < 1) throw base::UsageError("--edge and --block need a --lot of a metre at least.");
+  return std::optional<TrialHouse>(std::in_place, width, depth, std::max(1.0, s.rule_storeys.value_or(kUsualStoreys)),
+                                   known->second);
 }
 
 }  // namespace
@@ -116,16 +159,31 @@ int run_grammar_run(const settings::Settings& s) {
     options.attributes.emplace_back("building__levels", storeys);
     options.attributes.emplace_back("building.storeys", storeys);
   }
-  const grammar::Shape lot = grammar::initial_shape({{0, 0, 0}, {width, 0, 0}, {width, 0, -depth}, {0, 0, -depth}});
-  const grammar::Derivation result = grammar::derive(program, lot, options);
-  std::vector<grammar::Diagnostic> told;
-  for (const grammar::Diagnostic& d : result.diagnostics)
-    if (d.code != "unused_value" || d.text != "building__levels") told.push_back(d);
-  errors += print_diagnostics(told, program, true);
-  print_result(result, s.rule_tree);
+  const std::optional<TrialHouse> house = trial_house(s, width, depth);
+  std::vector<grammar::Derivation> results;
+  if (house) {
+    for (const TrialWall& wall : house->walls(s.rule_block)) {
+      options.source = house->values(wall.wall);
+      results.push_back(grammar::derive(program, wall.shape, options));
+    }
+  } else {
+    results.push_back(grammar::derive(
+        program, grammar::initial_shape({{0, 0, 0}, {width, 0, 0}, {width, 0, -depth}, {0, 0, -depth}}), options));
+  }
+  for (const grammar::Derivation& result : results) {
+    std::vector<grammar::Diagnostic> told;
+    for (const grammar::Diagnostic& d : result.diagnostics)
+      if (d.code != "unused_value" || d.text != "building__levels") told.push_back(d);
+    errors += print_diagnostics(told, program, true);
+    print_result(result, s.rule_tree);
+  }
+  std::vector<std::string> complaints;
+  const std::string glb = glb_of(results, house ? &*house : nullptr, complaints);
+  for (const std::string& what : complaints) fmt::print(stderr, "{}: {}\n", file, what);
+  errors += complaints.size();
   if (!s.build.output.empty()) {
     std::ofstream out(s.build.output, std::ios::binary);
-    out << glb_of(result);
+    out << glb;
     out.close();
     if (!out)
       throw base::OutputError(s.build.output + ": cannot be written. Check the folder and the space on the disk");

@@ -337,6 +337,19 @@ bool is_of_part(std::string_view name) {
   return name.starts_with("building.") || name.starts_with("roof.") || name.starts_with("storey.");
 }
 
+std::vector<StoreyLook> storey_looks(const FacadeContext& context) {
+  std::vector<StoreyLook> out;
+  if (context.building.detail_overrides.empty()) return out;
+  const std::vector<std::string> colours = by_storey(context, "colour"), materials = by_storey(context, "material");
+  const model::Attributes& a = context.part.attributes;
+  double low = a.ground_height.value + a.plinth_height.value - context.wall.base;
+  const std::vector<double> heights = storey_heights(context);
+  for (std::size_t i = 0; i < heights.size(); low += heights[i], ++i)
+    if (!colours[i].empty() || !materials[i].empty())
+      out.push_back({i, colours[i], materials[i], std::max(0.0, low), std::min(low + heights[i], eaves(context))});
+  return out;
+}
+
 std::string edge_order(const FacadeContext& context, std::string_view key) { return overridden_edge(context, key); }
 
 std::vector<std::string> unread_overrides(const model::Building& building) {

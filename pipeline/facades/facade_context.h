@@ -47,6 +47,14 @@ bool is_of_part(std::string_view name);
 /// m from the left end of the wall segment to each mapped entrance, in order, each place once.
 std::vector<double> entrance_places(const FacadeContext& context);
 
+/// Looks ordered for a storey, and where it lies in the wall when storeys are even (or as high as ordered).
+struct StoreyLook {
+  std::size_t storey = 0;
+  std::string colour, material;  ///< empty: not ordered
+  double low = 0, high = 0;      ///< m, in the wall's coordinates, up to the eaves
+};
+std::vector<StoreyLook> storey_looks(const FacadeContext& context);
+
 /// What is ordered of an edge that the wall segment belongs to; empty: nothing.
 std::string edge_order(const FacadeContext& context, std::string_view key);
 

@@ -96,7 +96,7 @@ class FacadeBuilder {
         continue;
       derive_segment(*grammar, {building, part, walls[segment.wall], segment, eaves, nullptr, &defaults_}, seed, row);
     }
-    tell_unpainted(building, part, grammar->file);
+    tell_unpainted(building, part);
     furnished_.reset();
     if (mass && grammar->roof && main_body(building) == &part) {
       furnish(*grammar, building, part, *mass, walls, segments, eaves, seed, row);
@@ -319,10 +319,21 @@ class FacadeBuilder {
     for (const grammar::Leaf& leaf : derivation.leaves)
       if (leaf.order) take(context, leaf);
     if (made) take_geometry(context, std::move(*made));
+    // Where rules lay out no storeys, as in blind walls, they are even.
+    for (const StoreyLook& look : storey_looks(context)) {
+      const std::string name = fmt::format("storey {}", look.storey);
+      const bool painted = std::ranges::any_of(paint_orders_, [&](const PaintOrder& o) {
+        return o.wall == context.segment.wall && o.name == name && o.left < context.segment.to - 0.01 &&
+               o.right > context.segment.from + 0.01;
+      });
+      if (!painted)
+        add_paint(context, context.segment.from, context.segment.to, look.low, look.high, look.colour, look.material,
+                  name);
+    }
   }
 
-  /// Storeys whose looks are ordered and that the rules painted nowhere.
-  void tell_unpainted(const model::Building& building, const BuildingPart& part, const std::string& file) {
+  /// Storeys whose looks are ordered and that are not there.
+  void tell_unpainted(const model::Building& building, const BuildingPart& part) {
     for (const model::DetailOverride& d : building.detail_overrides) {
       if (d.kind != model::DetailKind::storey || (d.body != part.id && d.body != building.id())) continue;
       const bool asked = std::ranges::any_of(
@@ -330,7 +341,7 @@ class FacadeBuilder {
       const std::string name = "storey " + d.name;
       if (asked && std::ranges::none_of(paint_orders_, [&](const PaintOrder& o) { return o.name == name; }))
         report_.add(part.osm, IssueCode::parameter_unread,
-                    fmt::format("{}: {} paints no {} of {}", d.from, file, name, part.id));
+                    fmt::format("{}: {} has no {}, or no wall that may be painted", d.from, part.id, name));
     }
   }
 

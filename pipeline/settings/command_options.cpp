@@ -190,6 +190,17 @@ Table of_grammar() {
                  .help = "run: value of an attribute, or of what the program gives (building.height); several times",
                  .several = true},
                 add_attribute, [](const S& s) { return base::joined(s.rule_attributes, " "); }),
+      text({.name = "edge",
+            .argument = "KIND",
+            .commands = kGrammar,
+            .help = "run: on a wall instead of a lot: street, courtyard, side or passage; as wide as --lot, with "
+                    "--storeys (else 4) of "
+                    "3.2 m. What rules can ask of house and wall has values, and elements are shown"},
+           &S::rule_edge),
+      flag({.name = "block",
+            .commands = kGrammar,
+            .help = "run: as --edge street, on the street front and the yard front of a house of that lot"},
+           &S::rule_block),
       text({.name = "rule",
             .argument = "NAME",
             .commands = kGrammar,

@@ -43,18 +43,20 @@ struct Settings {
   std::string rule_lot = "10x10";            ///< of `grammar run`: width and depth in metres
   std::optional<double> rule_storeys;        ///< of `grammar run`: building.storeys
   std::vector<std::string> rule_attributes;  ///< of `grammar run`: NAME=VALUE
-  std::string start_rule;                    ///< of `grammar run`; empty: the rule file's own
-  bool rule_tree = false;                    ///< `grammar run` prints all shapes, not only leaves
-  std::string map_by = "preset";             ///< of `districts show`: what the map is coloured by
-  std::string id;                            ///< or address of the building that `explain` is asked about
-  bool json = false;                         ///< print JSON
-  bool all = false;                          ///< `explain` tells everything
-  bool edges = false;                        ///< `explain` lists the wall segments of the outline
-  bool style = false;                        ///< `explain` lists all evidence for the style
-  std::string chip;                          ///< PNG that `explain` writes: the building in its aerial image
-  int port = 0;                              ///< of `view`; 0: not said
-  bool open = false;                         ///< `view` starts the browser
-  std::string site;                          ///< folder that `view` writes; empty: it serves
+  std::string rule_edge;          ///< of `grammar run`: kind of the wall that the rules work on; empty: a lot
+  bool rule_block = false;        ///< of `grammar run`: on the street front and the yard front of a house
+  std::string start_rule;         ///< of `grammar run`; empty: the rule file's own
+  bool rule_tree = false;         ///< `grammar run` prints all shapes, not only leaves
+  std::string map_by = "preset";  ///< of `districts show`: what the map is coloured by
+  std::string id;                 ///< or address of the building that `explain` is asked about
+  bool json = false;              ///< print JSON
+  bool all = false;               ///< `explain` tells everything
+  bool edges = false;             ///< `explain` lists the wall segments of the outline
+  bool style = false;             ///< `explain` lists all evidence for the style
+  std::string chip;               ///< PNG that `explain` writes: the building in its aerial image
+  int port = 0;                   ///< of `view`; 0: not said
+  bool open = false;              ///< `view` starts the browser
+  std::string site;               ///< folder that `view` writes; empty: it serves
   base::ProgressStyle progress = base::ProgressStyle::automatic;
   base::LogFormat log_format = base::LogFormat::text;
   bool verbose = false;  ///< `build` ends with figures for developers, too

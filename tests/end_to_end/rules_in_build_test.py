@@ -1,0 +1,120 @@
+"""Rule files of others as presets, and that what a user orders of houses, parts and storeys happens or is told."""
+import json
+import os
+import shutil
+import sqlite3
+import unittest
+
+from blockrand_run import SAMPLE, SOURCE, BuildTest, blockrand, extract, main, read_json
+
+FILES = os.path.join(SOURCE, 'tests', 'golden', 'rule_files', 'outset')
+WALLS = ('brick_bays', 'cornice_and_pilasters', 'mixed_elements', 'balconies', 'assets')
+PRIOR = '[prior]\nstyle = { gruenderzeit = 0.3, tenement = 0.1, modern = 0.5, other = 0.1 }\n'
+STREET = '''<?xml version='1.0' encoding='UTF-8'?>
+<osm version="0.6">
+{nodes}
+<way id="1" version="1"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="4"/><nd ref="1"/>
+ <tag k="building" v="yes"/><tag k="building:colour" v="red"/><tag k="building:levels" v="4"/><tag k="blockrand:roof" v="steep"/></way>
+<way id="2" version="1"><nd ref="1"/><nd ref="5"/><nd ref="6"/><nd ref="4"/><nd ref="1"/>
+ <tag k="building:part" v="yes"/><tag k="building:levels" v="4"/><tag k="blockrand:preset" v="slab"/></way>
+<way id="3" version="1"><nd ref="5"/><nd ref="2"/><nd ref="3"/><nd ref="6"/><nd ref="5"/>
+ <tag k="building:part" v="yes"/><tag k="building:levels" v="4"/><tag k="building:colour" v="#ff0000"/></way>
+</osm>
+'''
+PLACES = ((0, 0), (3e-4, 0), (3e-4, 1.2e-4), (0, 1.2e-4), (1.5e-4, 0), (1.5e-4, 1.2e-4))
+
+
+def codes(out, code):
+    report = read_json(out, 'report.json')
+    return [row for row in report['fallbacks'] + report['notices'] if row['code'] == code]
+
+
+class RulesInBuild(BuildTest):
+    def rule_set(self, files, rest=''):
+        folder = self.path('rules')
+        os.makedirs(folder, exist_ok=True)
+        text = 'title = "files of others"\n'
+        for name in files:
+            shutil.copy(os.path.join(FILES, name + '.cga'), folder)
+            text += f'[presets.{name}]\ndescription = "{name}"\nclass = "other"\ngrammar = "{name}.cga"\n'
+        share = ', '.join(f'{name} = {1 / len(files)}' for name in files)
+        path = os.path.join(folder, 'set.toml')
+        with open(path, 'w', encoding='utf-8') as f:
+            f.write(text + f'[[rule]]\nname = "all"\nlevel = "city"\npreset = {{ {share} }}\n' + rest + PRIOR)
+        return path
+
+    def street(self):
+        nodes = '\n'.join(f'<node id="{i + 1}" version="1" lat="{52.5 + y:.7f}" lon="{13.4 + x:.7f}"/>' for i, (x, y) in enumerate(PLACES))
+        return self.place('street.osm', STREET.format(nodes=nodes))
+
+    def valid(self, out):
+        run = blockrand('validate', out, '--progress', 'none')
+        self.assertEqual(run.code, 0, run.err[-2000:] + run.out[-2000:])
+
+    def test_rule_files_with_geometry_of_their_own(self):
+        for data in (SAMPLE, extract('berlin-zionskirchplatz-2020.osm')):
+            if not data or not os.path.exists(data):
+                continue
+            out = self.build(data, os.path.basename(data) + '.out', '--lod', '3', '--districts', self.rule_set(WALLS))
+            self.assertEqual(codes(out, 'LEAF_DROPPED'), [])
+            self.assertEqual(codes(out, 'PARAMETER_UNREAD'), [])
+            self.valid(out)
+            text = ''.join(open(os.path.join(out, 'citygml', name), encoding='utf-8').read() for name in os.listdir(os.path.join(out, 'citygml')))
+            self.assertIn('rule_geometry', text)
+            # Again, and by one thread: the same bytes.
+            again = self.build(data, 'again', '--lod', '3', '--districts', self.rule_set(WALLS), '-j', '1')
+            self.same_files(out, again)
+            shutil.rmtree(again)
+
+    def test_what_nothing_reads_is_told(self):
+        rules = self.rule_set(['brick_bays'], '[[rule]]\nname = "typo"\nlevel = "city"\nparameters = { ornamnet = 0.7 }\n')
+        run = blockrand('districts', 'check', rules)
+        self.assertEqual(run.code, 2, run)
+        self.assertRegex(run.err, r'set\.toml:\d+: rule "typo".*ornamnet')
+        out = self.build(self.street(), 'unread', '--lod', '3', '--districts', rules)
+        self.assertIn('ornamnet', type(self).last.err)
+        told = json.dumps(codes(out, 'PARAMETER_UNREAD'))
+        self.assertIn('ornamnet', told)
+        self.assertIn('blockrand:roof=steep', told)
+
+    def test_parts_storeys_and_edges_look_as_ordered(self):
+        orders = self.place('orders.toml', '[w1.w3]\npreset = "gz_plain"\n[w1.storey.2]\ncolour = "#123457"\n[w1.storey.1]\nmaterial = "brick"\n'
+                                           '[w1.storey.9]\ncolour = "#000001"\n[w1.bay.0]\nwidth = 3\n')
+        out = self.build(self.street(), 'ordered', '--lod', '3', '--overrides', orders)
+        db = sqlite3.connect(os.path.join(out, 'buildings.gpkg'))
+        presets = dict(db.execute('select id, preset from parts'))
+        self.assertEqual(presets, {'w1.w2': 'slab', 'w1.w3': 'gz_plain'})
+        self.assertEqual(dict(db.execute('select id, preset_source from parts')), {'w1.w2': 'tag', 'w1.w3': 'override'})
+        explained = ' '.join(blockrand('explain', out, 'w1', '--all').out.split())
+        self.assertIn('slab.cga of preset slab for w1.w2', explained)
+        self.assertIn('gruenderzeit.cga of preset gz_plain for w1.w3', explained)
+        city = ''.join(open(os.path.join(out, 'citygml', name), encoding='utf-8').read() for name in os.listdir(os.path.join(out, 'citygml')))
+        self.assertIn('wall_paint', city)
+        self.assertIn('#123457', city)
+        told = json.dumps(codes(out, 'PARAMETER_UNREAD'))
+        self.assertIn('storey 9', told)  # there are four
+        self.assertIn('width of a bay', told)
+        self.assertNotIn('storey 2', told)
+        # A colour's word is a pigment, its numbers are themselves; the tagged value stays in the data.
+        self.assertEqual(db.execute("select wall_colour, shown_wall_colour from buildings where id = 'w1'").fetchone()[0], '#ff0000')
+        shown = dict(db.execute('select id, shown_wall_colour from parts'))
+        self.assertEqual(shown['w1.w3'], '#ff0000')
+        self.assertNotEqual(shown['w1.w2'], '#ff0000')
+        self.valid(out)
+
+    def test_a_shipped_preset_runs_alone(self):
+        for name in ('gruenderzeit', 'sacred', 'public', 'office', 'hall', 'outbuilding', 'parking_deck', 'slab'):
+            file = os.path.join(SOURCE, 'configs', 'grammars', name + '.cga')
+            model = self.path(name + '.glb')
+            run = blockrand('grammar', 'run', file, '--block', '--lot', '24x14', '--storeys', '3', '-o', model)
+            self.assertEqual(run.code, 0, run)
+            self.assertIn('blockrand.', run.out)
+            # Elements are more than the faces of their leaves.
+            self.assertGreater(os.path.getsize(model), 5000, name)
+        wrong = blockrand('grammar', 'run', file, '--edge', 'stret', '--lot', '24x14')
+        self.assertEqual(wrong.code, 1, wrong)
+        self.assertIn('street', wrong.err)
+
+
+if __name__ == '__main__':
+    main()
