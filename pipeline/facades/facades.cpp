@@ -643,17 +643,21 @@ class FacadeBuilder {
   struct Cut {
     OpenedSolid opened;
     model::SolidTriangles triangles;
+    std::vector<bool> left_out;         ///< by asked_; empty: none was
     std::vector<std::size_t> of_asked;  ///< by opening given: of which element; kNoAsked for portals of passages
   };
 
   /// Cuts passages and what elements need; none when the solid is not valid then.
-  std::optional<Cut> cut_all(const std::vector<WallFrame>& walls) const {
+  /// \param left_out  by asked_: gets none
+  /// \param bad_face  gets the face that is no sound polygon then, where that is why
+  std::optional<Cut> cut_all(const std::vector<WallFrame>& walls, const std::vector<bool>& left_out = {},
+                             std::int64_t* bad_face = nullptr) const {
     Cut out;
     std::vector<WallOpening> openings = passage_openings();
     out.of_asked.assign(openings.size(), kNoAsked);
     for (std::size_t i = 0; i < asked_.size(); ++i) {
       const model::Element& element = library_.element(asked_[i].element);
-      if (element.opening.outline.empty()) continue;
+      if (element.opening.outline.empty() || (i < left_out.size() && left_out[i])) continue;
       WallOpening o;
       o.wall = asked_[i].wall;
       o.kind = element.semantic == model::ElementClass::door ? model::OpeningKind::door : model::OpeningKind::window;
@@ -666,11 +670,42 @@ class FacadeBuilder {
     out.opened = cut_openings(*closed_.solid, walls, openings, rounding_);
     auto triangles = geometry::triangulate(out.opened.solid, *closed_.solid, *closed_.triangles, out.opened.triangles);
     const bool passages_checked = !checked_portals_.empty() && checked_portals_ == open_portals();
-    if (!triangles || !(proved_valid(out.opened, *triangles, passages_checked) ||
-                        geometry::check_solid(out.opened.solid, *triangles, geometry::kBuilt).valid()))
-      return std::nullopt;
+    if (!triangles) return std::nullopt;
+    if (!proved_valid(out.opened, *triangles, passages_checked)) {
+      const geometry::SolidCheck check = geometry::check_solid(out.opened.solid, *triangles, geometry::kBuilt);
+      if (!check.valid()) {
+        const int code = check.code();
+        if (bad_face && code >= 100 && code < 300) *bad_face = check.first;
+        return std::nullopt;
+      }
+    }
     out.triangles = std::move(*triangles);
     return out;
+  }
+
+  /// A wall that folds with all of its openings gets every other one, else none: the other walls keep theirs.
+  std::optional<Cut> cut_most(const std::vector<WallFrame>& walls) {
+    std::vector<bool> left_out(asked_.size(), false);
+    std::set<std::int64_t> thinned;
+    for (std::size_t tries = 0; tries < kMostTries; ++tries) {
+      std::int64_t bad_face = -1;
+      std::optional<Cut> made = cut_all(walls, left_out, &bad_face);
+      if (made) {
+        made->left_out = std::move(left_out);
+        return made;
+      }
+      bool fewer = false;
+      const bool all = !thinned.insert(bad_face).second;
+      std::size_t number = 0;
+      for (std::size_t i = portal_elements_; i < asked_.size(); ++i) {
+        if (walls[asked_[i].wall].face != bad_face || library_.element(asked_[i].element).opening.outline.empty())
+          continue;
+        if (!left_out[i] && (all || number % 2 == 1)) left_out[i] = fewer = true;
+        ++number;
+      }
+      if (bad_face < 0 || (!fewer && all)) return std::nullopt;
+    }
+    return std::nullopt;
   }
 
   bool is_sunk_geometry(const Asked& asked) const {
@@ -726,12 +761,15 @@ class FacadeBuilder {
         if (is_sunk_geometry(a)) stand_before(a);
       made = cut_all(walls);
     }
+    if (!made) made = cut_most(walls);
     std::vector<std::uint32_t> opening_of(asked_.size(), model::kNoOpening);
     std::vector<bool> refused(asked_.size(), false);
     if (made) {
       for (std::size_t i = 0; i < made->of_asked.size(); ++i)
         if (made->of_asked[i] != kNoAsked)
           refused[made->of_asked[i]] = made->opened.refusals[i] != OpeningRefusal::none;
+      for (std::size_t i = 0; i < made->left_out.size(); ++i)
+        if (made->left_out[i]) refused[i] = true;
       for (std::uint32_t i = 0; i < made->opened.given.size(); ++i)
         if (const std::size_t of = made->of_asked[made->opened.given[i]]; of != kNoAsked) opening_of[of] = i;
       detail.solid = std::move(made->opened.solid);
@@ -797,6 +835,8 @@ class FacadeBuilder {
   void tell(const std::string& what) { told_.insert(what); }
 
   static constexpr std::size_t kNoAsked = ~std::size_t{0};
+  /// Of cut_most(): a wall is thinned twice at most, and few houses have more than one that folds.
+  static constexpr std::size_t kMostTries = 8;
   /// m. Lower gables have no windows.
   static constexpr double kLeastGable = 1.6;
   /// m of wall around windows of dormers and gables.
