@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <iterator>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -149,11 +150,13 @@ std::vector<double> storey_heights(const C& c) {
 std::uint32_t entered_by(const model::Building& building) {
   if (!building.situation.fronts.empty()) return building.situation.fronts.front();
   std::uint32_t best = model::kNoIndex;
-  std::pair<bool, double> most{false, 0};
+  std::tuple<bool, bool, double> most{false, false, 0};
   for (std::uint32_t i = 0; i < building.edges.size(); ++i) {
     const model::WallSegment& e = building.edges[i];
     if (e.kind == model::WallSegmentKind::party_wall || e.kind == model::WallSegmentKind::unknown) continue;
-    const std::pair of{e.kind == model::WallSegmentKind::courtyard, e.length()};
+    // Nobody enters from a light shaft, or by the wall of a passage.
+    const std::tuple of{e.ring == 0 && e.kind != model::WallSegmentKind::passage,
+                        e.kind == model::WallSegmentKind::courtyard, e.length()};
     if (best == model::kNoIndex || of > most) best = i, most = of;
   }
   return best;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <optional>
@@ -83,17 +84,19 @@ class FacadeBuilder {
     portals_ = take_portals(part, walls, segments);
     const double eaves = eaves_level(part);
     link_corners(segments, walls, eaves);
-    portal_elements_ = yielding_ = missed_doors_ = before_wall_ = 0;
+    portal_elements_ = yielding_ = missed_doors_ = before_wall_ = yielding_geometry_ = 0;
     checked_portals_.clear();
     if (!portals_.empty()) {
       try_passages(part, walls);
       close_portals();
     }
-    take_parameters(*grammar, building);
+    take_parameters(*grammar, building, part);
     memo_.values.clear();
     for (const FacadeSegment& segment : segments) {
-      if (segment.kind == model::WallSegmentKind::party_wall || segment.kind == model::WallSegmentKind::unknown)
+      if (segment.kind == model::WallSegmentKind::party_wall || segment.kind == model::WallSegmentKind::unknown) {
+        paint_edge({building, part, walls[segment.wall], segment, eaves, nullptr, &defaults_});
         continue;
+      }
       derive_segment(*grammar, {building, part, walls[segment.wall], segment, eaves, nullptr, &defaults_}, seed, row);
     }
     tell_unpainted(building, part);
@@ -127,6 +130,7 @@ class FacadeBuilder {
                double eaves, std::uint64_t seed, std::uint64_t row) {
     if (segments.empty()) return;
     take_roof_parameters(grammar, seed, row);
+    if (grammar.roof_makes_geometry) tell("rules for roofs place elements; other geometry of theirs is not built");
     WindowsBelow windows = windows_below();
     // The values are those of the building: the segment that rules see is its main front, else its first wall.
     const FacadeSegment* front = &segments.front();
@@ -190,7 +194,9 @@ class FacadeBuilder {
     std::vector<WindowAxes> out;
     for (const Asked& asked : asked_) {
       const model::Element& element = library_.element(asked.element);
-      if (element.semantic != model::ElementClass::window || element.opening.outline.empty()) continue;
+      if (element.semantic != model::ElementClass::window || element.opening.outline.empty() ||
+          element.kind == kRuleGeometry)
+        continue;
       const std::int32_t edge = part.lod2.faces[walls[asked.wall].face].edge;
       if (edge < 0) continue;
       auto of = std::find_if(out.begin(), out.end(), [&](const WindowAxes& a) { return a.edge == edge; });
@@ -311,9 +317,7 @@ class FacadeBuilder {
     const grammar::Derivation derivation = grammar.deriver->run(shape, options);
     for (const grammar::Diagnostic& d : derivation.diagnostics)
       if (d.severity == grammar::Severity::error) tell(d.message);
-    const std::string colour = edge_order(context, "colour"), material = edge_order(context, "material");
-    if (!colour.empty() || !material.empty())
-      add_paint(context, context.segment.from, context.segment.to, 0, wall.height, colour, material, "edge");
+    paint_edge(context);
     std::optional<RuleGeometry> made;
     if (grammar.makes_geometry) made = geometry_of(context, derivation.leaves);
     for (const grammar::Leaf& leaf : derivation.leaves)
@@ -334,8 +338,14 @@ class FacadeBuilder {
 
   /// Storeys whose looks are ordered and that are not there.
   void tell_unpainted(const model::Building& building, const BuildingPart& part) {
+    // What is ordered of the whole building holds where it has such a storey; it is told once.
+    const BuildingPart& highest = *std::ranges::max_element(
+        building.parts, {}, [](const BuildingPart& other) { return other.attributes.storeys.value; });
+    const double most = highest.attributes.storeys.value;
     for (const model::DetailOverride& d : building.detail_overrides) {
-      if (d.kind != model::DetailKind::storey || (d.body != part.id && d.body != building.id())) continue;
+      const bool of_part = d.body == part.id;
+      const bool of_building = d.body == building.id() && std::atof(d.name.c_str()) >= most && &highest == &part;
+      if (d.kind != model::DetailKind::storey || !(of_part || of_building)) continue;
       const bool asked = std::ranges::any_of(
           d.values, [](const auto& value) { return value.first == "colour" || value.first == "material"; });
       const std::string name = "storey " + d.name;
@@ -358,6 +368,14 @@ class FacadeBuilder {
     const grammar::Frame frame = grammar::scope_in_object(leaf.shape);
     add_paint(context, frame.origin.x, frame.origin.x + leaf.shape.size.x, frame.origin.y,
               frame.origin.y + leaf.shape.size.y, colour, material, std::move(storey));
+  }
+
+  /// What is ordered of a whole edge.
+  void paint_edge(const FacadeContext& context) {
+    if (context.building.detail_overrides.empty()) return;
+    const std::string colour = edge_order(context, "colour"), material = edge_order(context, "material");
+    if (!colour.empty() || !material.empty())
+      add_paint(context, context.segment.from, context.segment.to, 0, context.wall.height, colour, material, "edge");
   }
 
   void add_paint(const FacadeContext& context, double left, double right, double low, double high,
@@ -418,7 +436,7 @@ class FacadeBuilder {
   }
 
   void take_geometry(const FacadeContext& context, RuleGeometry made) {
-    yielding_ += made.yielding;
+    yielding_geometry_ += made.yielding;
     for (const auto& [what, count] : made.dropped) dropped_[what] += count;
     for (const std::string& texture : made.textures)
       tell("the image " + texture + " is not shown: what rules make has colours alone");
@@ -440,10 +458,15 @@ class FacadeBuilder {
   }
 
   /// What rules of a preset get from outside, the same for all walls of a building.
-  void take_parameters(const GrammarLibrary::Entry& grammar, const model::Building& building) {
-    if (derived_for_ == &grammar && parameters_ == building.preset_parameters) return;
+  /// Those of district rules are meant for the building's preset.
+  void take_parameters(const GrammarLibrary::Entry& grammar, const model::Building& building,
+                       const BuildingPart& part) {
+    static const decltype(parameters_) kNone;
+    const bool own = part.attributes.preset.value != building.attributes.preset.value;
+    const auto& wanted = own && !building.attributes.preset.value.empty() ? kNone : building.preset_parameters;
+    if (derived_for_ == &grammar && parameters_ == wanted) return;
     derived_for_ = &grammar;
-    parameters_ = building.preset_parameters;
+    parameters_ = wanted;
     auto& attributes = derive_options_.attributes;
     attributes.clear();
     // The first of a name counts: what district rules and overrides say is stronger than the preset's own values.
@@ -683,10 +706,11 @@ class FacadeBuilder {
     return out;
   }
 
-  /// A wall that folds with all of its openings gets every other one, else none: the other walls keep theirs.
+  /// Of a wall that folds with all of its openings, what rules sank stands before it; then every other window goes, then all
+  /// openings. The other walls keep theirs.
   std::optional<Cut> cut_most(const std::vector<WallFrame>& walls) {
     std::vector<bool> left_out(asked_.size(), false);
-    std::set<std::int64_t> thinned;
+    std::map<std::int64_t, int> steps;  // by face
     for (std::size_t tries = 0; tries < kMostTries; ++tries) {
       std::int64_t bad_face = -1;
       std::optional<Cut> made = cut_all(walls, left_out, &bad_face);
@@ -694,18 +718,27 @@ class FacadeBuilder {
         made->left_out = std::move(left_out);
         return made;
       }
+      if (bad_face < 0) return std::nullopt;
       bool fewer = false;
-      const bool all = !thinned.insert(bad_face).second;
-      std::size_t number = 0;
-      for (std::size_t i = portal_elements_; i < asked_.size(); ++i) {
-        if (walls[asked_[i].wall].face != bad_face || library_.element(asked_[i].element).opening.outline.empty())
-          continue;
-        if (!left_out[i] && (all || number % 2 == 1)) left_out[i] = fewer = true;
-        ++number;
-      }
-      if (bad_face < 0 || (!fewer && all)) return std::nullopt;
+      for (int& step = steps[bad_face]; !fewer && step < 3; ++step) fewer = thin(walls, bad_face, step, left_out);
+      if (!fewer) return std::nullopt;
     }
     return std::nullopt;
+  }
+
+  /// \return  whether the wall has fewer openings now
+  bool thin(const std::vector<WallFrame>& walls, std::int64_t face, int step, std::vector<bool>& left_out) {
+    bool fewer = false;
+    std::size_t number = 0;
+    for (std::size_t i = portal_elements_; i < asked_.size(); ++i) {
+      const model::Element& element = library_.element(asked_[i].element);
+      if (walls[asked_[i].wall].face != face || element.opening.outline.empty() || left_out[i]) continue;
+      if (step == 0 && is_sunk_geometry(asked_[i]))
+        stand_before(asked_[i]), fewer = true;
+      else if (step == 2 || (step == 1 && element.semantic != model::ElementClass::door && number++ % 2 == 1))
+        left_out[i] = fewer = true;
+    }
+    return fewer;
   }
 
   bool is_sunk_geometry(const Asked& asked) const {
@@ -748,6 +781,7 @@ class FacadeBuilder {
       return;
     }
     std::optional<Cut> made = cut_all(walls);
+    if (!made) made = cut_most(walls);  // the wall that folds alone suffers
     if (!made && passages) {
       const std::vector<Asked> rest(asked_.begin() + static_cast<std::ptrdiff_t>(portal_elements_), asked_.end());
       asked_.clear();
@@ -755,13 +789,8 @@ class FacadeBuilder {
       close_portals();
       asked_.insert(asked_.end(), rest.begin(), rest.end());
       made = cut_all(walls);
+      if (!made) made = cut_most(walls);
     }
-    if (!made && std::any_of(asked_.begin(), asked_.end(), [&](const Asked& a) { return is_sunk_geometry(a); })) {
-      for (Asked& a : asked_)
-        if (is_sunk_geometry(a)) stand_before(a);
-      made = cut_all(walls);
-    }
-    if (!made) made = cut_most(walls);
     std::vector<std::uint32_t> opening_of(asked_.size(), model::kNoOpening);
     std::vector<bool> refused(asked_.size(), false);
     if (made) {
@@ -806,6 +835,9 @@ class FacadeBuilder {
   /// \param left_out  of what was asked for
   void finish_told(BuildingPart& part, std::size_t left_out) {
     left_out += missed_doors_;
+    if (yielding_geometry_ > 0)
+      report_.add(part.osm, IssueCode::opening_left_out,
+                  fmt::format("{}: {} leaves of rules yield to a passage", part.id, yielding_geometry_));
     if (before_wall_ > 0) {
       part.fallbacks.push_back(IssueCode::opening_left_out);
       report_.add(part.osm, IssueCode::opening_left_out,
@@ -859,10 +891,11 @@ class FacadeBuilder {
   std::vector<PassagePortal> portals_;
   /// The open portals with which, and no other opening, the solid is valid and its borders stayed as they are; empty: not known.
   std::vector<bool> checked_portals_;
-  std::size_t portal_elements_ = 0;  ///< the first of asked_: what close_portals() put there
-  std::size_t yielding_ = 0;         ///< elements that would stand in a portal
-  std::size_t before_wall_ = 0;      ///< sunk bodies of rules that got no opening
-  std::size_t missed_doors_ = 0;     ///< those of them that are doors at mapped entrances
+  std::size_t portal_elements_ = 0;    ///< the first of asked_: what close_portals() put there
+  std::size_t yielding_ = 0;           ///< elements that would stand in a portal
+  std::size_t yielding_geometry_ = 0;  ///< leaves that stand in a portal as a whole
+  std::size_t before_wall_ = 0;        ///< sunk bodies of rules that got no opening
+  std::size_t missed_doors_ = 0;       ///< those of them that are doors at mapped entrances
   std::set<std::string> told_;
   std::vector<PaintOrder> paint_orders_;                  ///< of the part at work
   std::map<std::uint32_t, model::PartMaterial> painted_;  ///< by face: walls that rules gave another look

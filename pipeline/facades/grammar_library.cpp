@@ -128,10 +128,17 @@ GrammarLibrary::GrammarLibrary(const std::string& folder, std::span<const Preset
     const File* facade = file_of(preset.file, preset.beside);
     entry.deriver = &*facade->deriver;
     entry.makes_geometry = facade->makes_geometry;
-    if (!preset.roof_file.empty()) entry.roof = &*file_of(preset.roof_file, preset.beside)->deriver;
+    if (!preset.roof_file.empty()) {
+      const File* roof = file_of(preset.roof_file, preset.beside);
+      entry.roof = &*roof->deriver;
+      entry.roof_makes_geometry = roof->makes_geometry;
+    }
     for (const auto& [name, value] : preset.attributes) entry.attributes.emplace_back(name, value);
     entries_.push_back(std::move(entry));
   }
+  for (const auto& file : files_)
+    for (const grammar::Slot& slot : file->program.slots)
+      if (!slot.constant) read_.insert(slot.name);
   std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.preset < b.preset; });
 }
 
@@ -168,10 +175,6 @@ bool GrammarLibrary::reads(const Entry& entry, const std::string& parameter) {
     return std::ranges::any_of(slots, [](std::uint32_t from) { return from != grammar::kNone; });
   };
   return has(entry.deriver) || has(entry.roof);
-}
-
-bool GrammarLibrary::any_reads(const std::string& parameter) const {
-  return std::ranges::any_of(entries_, [&](const Entry& entry) { return reads(entry, parameter); });
 }
 
 std::vector<std::string> unread_parameters(const districts::RuleSets& book, const GrammarLibrary& grammars) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,6 +43,7 @@ class GrammarLibrary {
     std::string file;  ///< below the folder of grammars
     const grammar::Deriver* deriver = nullptr;
     bool makes_geometry = false;  ///< its rules make more than elements and bare pieces of the wall (rule_geometry.h)
+    bool roof_makes_geometry = false;
     const grammar::Deriver* roof = nullptr;                          ///< of the rules for roofs; null: there are none
     std::vector<std::pair<std::string, grammar::Value>> attributes;  ///< of both
   };
@@ -56,7 +58,7 @@ class GrammarLibrary {
   const Entry* find(std::string_view preset) const;
   /// Whether a rule file of the preset has an attribute of that name, or one of any preset's does.
   static bool reads(const Entry& entry, const std::string& parameter);
-  bool any_reads(const std::string& parameter) const;
+  bool any_reads(const std::string& parameter) const { return read_.contains(parameter); }
   const std::vector<Entry>& entries() const { return entries_; }
   bool empty() const { return entries_.empty(); }
   /// Paths of all files that were read, imports included, by name.
@@ -67,7 +69,8 @@ class GrammarLibrary {
  private:
   struct File;
   std::vector<std::unique_ptr<File>> files_;
-  std::vector<Entry> entries_;  ///< by name
+  std::vector<Entry> entries_;               ///< by name
+  std::set<std::string, std::less<>> read_;  ///< names of attributes of all files, as parameters name them
 };
 
 /// The rule files of a rule book's presets, from configs/grammars.

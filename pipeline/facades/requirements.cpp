@@ -282,10 +282,10 @@ void check_requirements(model::Region& region, const masses::BuiltMasses& built,
                         std::span<const districts::Preset> presets) {
   for (std::uint32_t b = 0; b < region.buildings.size(); ++b) {
     Building& building = region.buildings[b];
-    const auto preset = std::ranges::find(presets, building.attributes.preset.value, &districts::Preset::name);
-    if (preset == presets.end() || !preset->requirements) continue;
     const BuildingPart* body = main_body(building);
     if (!body || body->lod < 3) continue;
+    const auto preset = std::ranges::find(presets, body->attributes.preset.value, &districts::Preset::name);
+    if (preset == presets.end() || !preset->requirements) continue;
     const auto number = static_cast<std::uint32_t>(body - building.parts.data());
     Check(region, building, *preset).run(*body, built.find({b, number}));
   }

@@ -6,7 +6,8 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <numeric>
+#include <initializer_list>
+#include <map>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -33,9 +34,17 @@ constexpr double kOpeningBorder = kOpeningClearance + 0.001;
 constexpr double kLeastSunk = 2 * kLeastOpening;
 /// m between sunk leaves that share an opening: between two there would be no room for both borders.
 constexpr double kShared = 2 * kOpeningBorder;
+/// Share of a box that leaves must fill to get an opening: else wall is cut away where nobody sank anything.
+constexpr double kLeastFilled = 0.6;
 /// m, deepest that geometry is sunk into a wall; elements reach no deeper (docs/elements.md).
 constexpr double kDeepest = 0.8;
 constexpr double kSmallest = 1e-6;  ///< m2, of a triangle
+
+constexpr std::size_t kMostCorners = 8;  ///< of a face that stays whole; others become triangles
+constexpr double kPlane = 0.001;         ///< m, of a whole face across its plane: a grid step
+constexpr double kOnceRound = 7;         ///< rad: between one turn and two
+/// Corners of all bodies of a wall: what is beyond is told, and left out. An asset of 20,000 corners in a hundred windows.
+constexpr std::size_t kMostWallCorners = 2'000'000;
 
 /// A leaf in the wall's coordinates.
 struct WallLeaf {
@@ -62,13 +71,34 @@ bool is_convex(const grammar::Mesh& mesh, const grammar::MeshFace& face) {
     else if (grammar::dot(first, turn) < 0)
       return false;
   }
-  return grammar::length(first) > 0 && loop.size() <= 8;
+  if (grammar::length(first) == 0 || loop.size() > kMostCorners) return false;
+  const Vector3 normal = grammar::normalized(first), at = mesh.vertices[loop[0].vertex];
+  for (const grammar::Corner& corner : loop)
+    if (std::fabs(grammar::dot(normal, mesh.vertices[corner.vertex] - at)) > kPlane) return false;
+  // Once round: stars turn the same way, too.
+  double turned = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vector3 a = mesh.vertices[loop[i].vertex], b = mesh.vertices[loop[(i + 1) % loop.size()].vertex],
+                  c = mesh.vertices[loop[(i + 2) % loop.size()].vertex];
+    const double straight = grammar::dot(grammar::normalized(b - a), grammar::normalized(c - b));
+    turned += std::acos(std::clamp(straight, -1.0, 1.0));
+  }
+  return turned < kOnceRound;
 }
 
-bool names_glass(std::string_view symbol) {
-  std::string lower;
-  for (const char c : symbol) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower.find("glass") != std::string::npos || lower.find("pane") == 0;
+/// Whether a symbol has one of the words: "WindowGlass", "window_glass", "Glass2"; "Panel" has no "pane".
+bool has_word(std::string_view symbol, std::initializer_list<std::string_view> words) {
+  std::string word;
+  const auto known = [&] { return std::find(words.begin(), words.end(), word) != words.end(); };
+  for (const char c : symbol) {
+    const auto u = static_cast<unsigned char>(c);
+    if (!std::isalpha(u) || (std::isupper(u) && !word.empty())) {
+      if (known()) return true;
+      word.clear();
+    }
+    if (std::isalpha(u)) word += static_cast<char>(std::tolower(u));
+  }
+  return known();
 }
 
 model::Colour colour_of(const grammar::Material& material) {
@@ -83,12 +113,13 @@ WallLeaf in_wall(const Leaf& leaf, const model::PartMaterial& usual, const attri
   out.symbol = leaf.symbol.ends_with('.') ? leaf.symbol.substr(0, leaf.symbol.size() - 1) : leaf.symbol;
   out.look = usual;
   const grammar::Material* material = leaf.shape.material.get();
-  if (material && !(*material == grammar::Material{})) {
+  if (material) {  // somebody gave it looks, white among them
     const bool coloured = material->colour != grammar::Material{}.colour;
     if (coloured || material->colour_map.empty()) out.look.colour = colour_of(*material);
-    const char* name = material->colour[3] < 0.9 || names_glass(out.symbol) ? "glass"
-                       : material->metallic > 0.5                           ? "metal"
-                                                                            : "";
+    const char* name = material->colour[3] < 0.9 || has_word(out.symbol, {"glass", "pane", "panes", "glazing"})
+                           ? "glass"
+                       : material->metallic > 0.5 ? "metal"
+                                                  : "";
     if (*name) out.look.material = static_cast<std::uint8_t>(std::max(defaults.material(name), 0));
   }
   const grammar::Mesh& mesh = *leaf.shape.mesh;
@@ -155,8 +186,8 @@ class BodyBuilder {
       const std::uint32_t at = vertex(model::snap(Point3{p.x - anchor_.x, p.y - anchor_.y, p.z + forward}));
       if (corners.empty() || (corners.back() != at && corners.front() != at)) corners.push_back(at);
     }
-    if (corners.size() < 3) return;  // thinner than the grid
     model::ElementMesh& mesh = body_.element.mesh;
+    if (corners.size() < 3 || !has_area(mesh, corners)) return;  // thinner than the grid
     mesh.faces.push_back(
         {static_cast<std::uint32_t>(mesh.indices.size()), static_cast<std::uint32_t>(corners.size()), part(look)});
     mesh.indices.insert(mesh.indices.end(), corners.begin(), corners.end());
@@ -168,10 +199,19 @@ class BodyBuilder {
  private:
   std::uint32_t vertex(Point3 p) {
     auto& all = body_.element.mesh.vertices;
-    const auto found = std::find(all.begin(), all.end(), p);
-    if (found != all.end()) return static_cast<std::uint32_t>(found - all.begin());
-    all.push_back(p);
-    return static_cast<std::uint32_t>(all.size() - 1);
+    const auto [at, is_new] = number_.try_emplace(p, static_cast<std::uint32_t>(all.size()));
+    if (is_new) all.push_back(p);
+    return at->second;
+  }
+
+  static bool has_area(const model::ElementMesh& mesh, const std::vector<std::uint32_t>& corners) {
+    const auto at = [&](std::size_t i) {
+      const Point3& p = mesh.vertices[corners[i % corners.size()]];
+      return Vector3{p.x, p.y, p.z};
+    };
+    Vector3 sum{};
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) sum = sum + grammar::cross(at(i) - at(0), at(i + 1) - at(0));
+    return grammar::length(sum) > kSmallest;
   }
 
   /// An element has as many looks as parts; what comes later takes the nearest.
@@ -197,18 +237,12 @@ class BodyBuilder {
 
   Point2 anchor_;
   RuleBody body_;
+  std::map<Point3, std::uint32_t> number_;
   std::array<bool, model::kElementPartCount> used_{};
 };
 
 /// Middle of the lower edge: equal leaves become equal elements wherever they stand.
 Point2 anchor_of(Point3 low, Point3 high) { return {(low.x + high.x) / 2, low.y}; }
-
-bool names_door(std::string_view symbol) {
-  std::string lower;
-  for (const char c : symbol) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower.find("door") != std::string::npos || lower.find("gate") != std::string::npos ||
-         lower.find("portal") != std::string::npos;
-}
 
 /// Leaves that lie in the wall, and what is before them, in one opening.
 RuleBody sunk_body(std::span<const WallLeaf* const> leaves, Point3 low, Point3 high, const model::PartMaterial& usual) {
@@ -228,7 +262,9 @@ RuleBody sunk_body(std::span<const WallLeaf* const> leaves, Point3 low, Point3 h
                                    Point3{high.x, high.y, -deep - kPaint}, Point3{low.x, high.y, -deep - kPaint}};
   builder.add(back, usual);
   model::Element& element = builder.element();
-  element.semantic = names_door(main->symbol) ? model::ElementClass::door : model::ElementClass::window;
+  element.semantic = has_word(main->symbol, {"door", "doors", "gate", "portal", "entrance"})
+                         ? model::ElementClass::door
+                         : model::ElementClass::window;
   element.opening.reveal = std::nearbyint(deep * model::kGridStepsPerMetre) / model::kGridStepsPerMetre;
   return builder.take();
 }
@@ -238,6 +274,55 @@ void set_opening(RuleBody& body, Point3 low, Point3 high) {
   const Point2 from = model::snap(Point2{low.x - body.at.x, low.y - body.at.y}),
                to = model::snap(Point2{high.x - body.at.x, high.y - body.at.y});
   body.element.opening.outline = {from, {to.x, from.y}, to, {from.x, to.y}};
+}
+
+/// Leaves that lie in the wall, and whose boxes meet.
+struct SunkBox {
+  Point3 low, high;
+  std::vector<std::size_t> leaves;
+};
+
+std::vector<SunkBox> sunk_boxes(const std::vector<WallLeaf>& leaves) {
+  std::vector<SunkBox> boxes;
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    if (!is_sunk(leaves[i])) continue;
+    SunkBox box{leaves[i].low, leaves[i].high, {i}};
+    for (bool grew = true; grew;) {
+      grew = false;
+      for (std::size_t b = 0; b < boxes.size(); ++b) {
+        const SunkBox& other = boxes[b];
+        if (other.low.x > box.high.x + kShared || other.high.x < box.low.x - kShared ||
+            other.low.y > box.high.y + kShared || other.high.y < box.low.y - kShared)
+          continue;
+        box.low = {std::min(box.low.x, other.low.x), std::min(box.low.y, other.low.y),
+                   std::min(box.low.z, other.low.z)};
+        box.high = {std::max(box.high.x, other.high.x), std::max(box.high.y, other.high.y),
+                    std::max(box.high.z, other.high.z)};
+        box.leaves.insert(box.leaves.begin(), other.leaves.begin(), other.leaves.end());
+        boxes.erase(boxes.begin() + static_cast<std::ptrdiff_t>(b));
+        grew = true;
+        break;
+      }
+    }
+    boxes.push_back(std::move(box));
+  }
+  return boxes;
+}
+
+struct Rectangle {
+  double left = 0, right = 0, low = 0, high = 0;  ///< m, in the wall's coordinates
+};
+
+/// Where elements are ordered: they have openings of their own.
+std::vector<Rectangle> rectangles_of_orders(std::span<const Leaf> leaves) {
+  std::vector<Rectangle> out;
+  for (const Leaf& leaf : leaves) {
+    if (!leaf.order) continue;
+    const grammar::Frame frame = grammar::scope_in_object(leaf.shape);
+    out.push_back(
+        {frame.origin.x, frame.origin.x + leaf.shape.size.x, frame.origin.y, frame.origin.y + leaf.shape.size.y});
+  }
+  return out;
 }
 
 bool meets(const KeptFree& portal, Point3 low, Point3 high) {
@@ -314,6 +399,10 @@ bool makes_geometry(const grammar::Program& program) {
 model::Element before_wall(const model::Element& sunk) {
   model::Element out = sunk;
   out.semantic = model::ElementClass::installation;
+  if (!sunk.opening.outline.empty()) {  // the plate behind everything is for openings
+    out.mesh.indices.resize(out.mesh.faces.back().first);
+    out.mesh.faces.pop_back();
+  }
   for (Point3& v : out.mesh.vertices) v.z = model::snap(v.z + sunk.opening.reveal + 2 * kPaint);
   out.opening = {};
   return out;
@@ -341,76 +430,66 @@ RuleGeometry rule_geometry(std::span<const Leaf> leaves, const WallFrame& wall, 
   }
   const model::PartMaterial shown = out.ground = painted ? *painted : ground_look(made, usual);
   const auto is_bare = [&](const WallLeaf& l) { return is_flat(l) && l.look == shown; };
-  // Sunk leaves whose boxes meet share an opening.
-  std::vector<std::size_t> sunk;
-  for (std::size_t i = 0; i < made.size(); ++i)
-    if (is_sunk(made[i])) sunk.push_back(i);
-  struct Box {
-    Point3 low, high;
-    std::vector<const WallLeaf*> leaves;
-  };
-  std::vector<Box> boxes;
-  for (const std::size_t i : sunk) {
-    Box box{made[i].low, made[i].high, {&made[i]}};
-    for (bool grew = true; grew;) {
-      grew = false;
-      for (std::size_t b = 0; b < boxes.size(); ++b) {
-        const Box& other = boxes[b];
-        if (other.low.x > box.high.x + kShared || other.high.x < box.low.x - kShared ||
-            other.low.y > box.high.y + kShared || other.high.y < box.low.y - kShared)
-          continue;
-        box.low = {std::min(box.low.x, other.low.x), std::min(box.low.y, other.low.y),
-                   std::min(box.low.z, other.low.z)};
-        box.high = {std::max(box.high.x, other.high.x), std::max(box.high.y, other.high.y),
-                    std::max(box.high.z, other.high.z)};
-        box.leaves.insert(box.leaves.begin(), other.leaves.begin(), other.leaves.end());
-        boxes.erase(boxes.begin() + static_cast<std::ptrdiff_t>(b));
-        grew = true;
-        break;
-      }
-    }
-    boxes.push_back(std::move(box));
-  }
+  const std::vector<Rectangle> orders = rectangles_of_orders(leaves);
+  // A body in an opening, or each leaf of it before the wall where none can be.
   std::vector<bool> in_opening(made.size(), false);
-  for (Box& box : boxes) {
-    // What the wall shows before the opening goes along: it would be cut away.
-    for (std::size_t i = 0; i < made.size(); ++i) {
-      const WallLeaf& l = made[i];
-      if (!is_flat(l) || in_opening[i]) continue;
-      if (l.low.x < box.low.x - kInPlane || l.high.x > box.high.x + kInPlane || l.low.y < box.low.y - kInPlane ||
-          l.high.y > box.high.y + kInPlane)
-        continue;
-      in_opening[i] = true;
-      box.leaves.push_back(&l);
-    }
+  std::vector<double> forward(made.size(), 0);
+  for (const SunkBox& box : sunk_boxes(made)) {
     // Openings keep a border of wall.
     Point3 low = box.low, high = box.high;
     low.x = std::max(low.x, kOpeningBorder);
     high.x = std::min(high.x, wall.length - kOpeningBorder);
     low.y = std::max(low.y, kOpeningBorder);
     high.y = std::min(high.y, wall.height - kOpeningBorder);
-    if (std::any_of(portals.begin(), portals.end(), [&](const KeptFree& p) { return meets(p, box.low, box.high); })) {
-      ++out.yielding;
+    double filled = 0;
+    for (const std::size_t i : box.leaves)
+      filled += (made[i].high.x - made[i].low.x) * (made[i].high.y - made[i].low.y);
+    const auto apart = [&](const Rectangle& r) {
+      return r.left > box.high.x - kInPlane || r.right < box.low.x + kInPlane || r.low > box.high.y - kInPlane ||
+             r.high < box.low.y + kInPlane;
+    };
+    const bool opens =
+        high.x - low.x >= kLeastSunk && high.y - low.y >= kLeastSunk &&
+        filled >= kLeastFilled * (box.high.x - box.low.x) * (box.high.y - box.low.y) &&
+        std::all_of(orders.begin(), orders.end(), apart) &&
+        std::none_of(portals.begin(), portals.end(), [&](const KeptFree& p) { return meets(p, box.low, box.high); });
+    if (!opens) {
+      for (const std::size_t i : box.leaves) forward[i] = kPaint - box.low.z;
       continue;
     }
-    RuleBody body = sunk_body(box.leaves, box.low, box.high, shown);
-    if (high.x - low.x < kLeastSunk || high.y - low.y < kLeastSunk)
-      body.element = before_wall(body.element);  // too small for an opening
-    else
-      set_opening(body, low, high);
-    if (!body.element.mesh.faces.empty()) out.bodies.push_back(std::move(body));
+    std::vector<const WallLeaf*> together;
+    for (const std::size_t i : box.leaves) together.push_back(&made[i]), in_opening[i] = true;
+    // What the wall shows before the opening goes along: it would be cut away.
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      const WallLeaf& l = made[i];
+      if (!is_flat(l) || in_opening[i] || l.low.x < box.low.x - kInPlane || l.high.x > box.high.x + kInPlane ||
+          l.low.y < box.low.y - kInPlane || l.high.y > box.high.y + kInPlane)
+        continue;
+      in_opening[i] = true;
+      together.push_back(&l);
+    }
+    RuleBody body = sunk_body(together, box.low, box.high, shown);
+    set_opening(body, low, high);
+    out.bodies.push_back(std::move(body));
   }
+  std::size_t corners = 0;
+  for (const RuleBody& body : out.bodies) corners += body.element.mesh.indices.size();
   for (std::size_t i = 0; i < made.size(); ++i) {
     WallLeaf& l = made[i];
-    if (is_sunk(l) || in_opening[i] || is_bare(l)) continue;
+    if (in_opening[i] || is_bare(l)) continue;
     for (const KeptFree& portal : portals)
       if (meets(portal, l.low, l.high)) l.polygons = without(l.polygons, portal);
     if (l.polygons.empty()) {
       ++out.yielding;
       continue;
     }
+    for (const auto& polygon : l.polygons) corners += polygon.size();
+    if (corners > kMostWallCorners) {
+      ++out.dropped[l.symbol + ": more than two million corners on one wall"];
+      continue;
+    }
     BodyBuilder builder(anchor_of(l.low, l.high), l.symbol, shown);
-    for (const auto& polygon : l.polygons) builder.add(polygon, l.look, is_flat(l) ? kPaint : 0);
+    for (const auto& polygon : l.polygons) builder.add(polygon, l.look, is_flat(l) ? kPaint : forward[i]);
     builder.count();
     // A leaf thinner than the grid shows nothing.
     if (RuleBody body = builder.take(); !body.element.mesh.faces.empty()) out.bodies.push_back(std::move(body));

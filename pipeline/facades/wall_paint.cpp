@@ -10,7 +10,7 @@ namespace {
 
 using model::Point2;
 
-/// m between layers and before the wall: nothing flickers (docs/elements.md).
+/// m between layers: nothing flickers (docs/elements.md). The lowest is left to faces that rules paint.
 constexpr double kLayer = 0.006;
 /// m, of a painted wall: less is no wall.
 constexpr double kLeast = 0.02;
@@ -54,7 +54,7 @@ std::optional<WallPaint> wall_paint(const PaintOrder& order, const WallFrame& wa
     auto& loop = face.loops.emplace_back();
     for (const Point2& p : ring.points) {
       loop.push_back({static_cast<std::uint32_t>(mesh.vertices.size()), 0});
-      mesh.vertices.push_back({p.x - order.left, p.y - order.low, kLayer * (1 + level)});
+      mesh.vertices.push_back({p.x - order.left, p.y - order.low, kLayer * (2 + level)});
     }
   };
   for (const model::Polygon& p : left_over.polygons) {

@@ -17,6 +17,7 @@
 #include "pipeline/base/version.h"
 #include "pipeline/gdal/gdal_library.h"
 #include "pipeline/georef/proj_library.h"
+#include "pipeline/model/osm_keys.h"
 #include "pipeline/run/configuration.h"
 
 namespace blockrand::run {
@@ -81,6 +82,13 @@ struct TileKeys::Impl {
   std::span<const model::ReportRow> earlier;
   std::span<const std::unique_ptr<outputs::Output>> outputs;
   std::map<std::string, std::string, std::less<>> grammars;  ///< hash of the rule files, by preset
+  const facades::GrammarLibrary* library = nullptr;          ///< null: there are no facades
+
+  void pack_rules(std::string_view preset, Packer& out) const {
+    const auto rules = grammars.find(preset);
+    out << (rules != grammars.end());
+    if (rules != grammars.end()) out << rules->second;
+  }
 
   void pack_mapped_objects(const footprints::Seed& seed, Packer& out) const {
     const model::Extract& extract = in.extract;
@@ -88,7 +96,13 @@ struct TileKeys::Impl {
       const MappedBuilding& mapped = extract.buildings[index];
       pack_mapped(extract, mapped, in.kept, out);
       pack_rows(earlier, mapped.id, out);
-      if (const attributes::OverrideEntry* order = in.overrides.find(mapped.id)) out << *order;
+      const attributes::OverrideEntry* order = in.overrides.find(mapped.id);
+      if (order) out << *order;
+      // Presets that tags and orders name, of buildings and parts.
+      const std::string* ordered = order ? order->text("preset") : nullptr;
+      for (const std::string_view name : {extract.tag(mapped.tags, model::osm_key::kPreset),
+                                          ordered ? std::string_view(*ordered) : std::string_view()})
+        if (!name.empty()) pack_rules(name, out);
     };
     out << (seed.outline != model::kNoIndex);
     if (seed.outline != model::kNoIndex) object(seed.outline);
@@ -129,6 +143,8 @@ struct TileKeys::Impl {
     a.fired.clear();
     for (districts::Parameter& parameter : a.parameters) parameter.rule = 0;
     out << position << a;
+    // What no rule file reads is told.
+    for (const districts::Parameter& parameter : a.parameters) out << (library && library->any_reads(parameter.key));
     if (preset == districts::Decision::kNone) return;
     const std::string& name = in.assigner.book().presets[preset].name;
     out << name;
@@ -161,7 +177,7 @@ struct TileKeys::Impl {
 
 TileKeys::TileKeys(const TileInputs& inputs, const BuildInputs& files, std::string shared,
                    std::span<const model::ReportRow> earlier, std::span<const std::unique_ptr<outputs::Output>> outputs)
-    : impl_(new Impl{inputs, std::move(shared), earlier, outputs, {}}) {
+    : impl_(new Impl{inputs, std::move(shared), earlier, outputs, {}, files.grammars ? &*files.grammars : nullptr}) {
   std::map<std::string, std::string> hashes;  // by path
   for (const districts::Preset& preset : files.rules.book.presets) {
     if (!files.grammars) break;

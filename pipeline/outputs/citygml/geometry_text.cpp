@@ -29,8 +29,9 @@ void append_detail_polygon_id(std::string& out, std::string_view id, std::size_t
 void append_wall_id(std::string& out, std::string_view id, std::size_t face) { append_id(out, id, "_m", face); }
 
 bool is_shared_face(const model::Solid& lod2, const model::Solid& lod3, std::size_t face) {
+  if (!geometry::same_face(lod2, lod3, face)) return false;
   const model::Face &a = lod2.faces[face], &b = lod3.faces[face];
-  return a.material == b.material && a.colour == b.colour && geometry::same_face(lod2, lod3, face);
+  return a.material == b.material && a.colour == b.colour;
 }
 
 std::vector<std::vector<std::size_t>> reveals_by_wall(const model::Solid& lod2, const model::Detail& detail) {
