@@ -5,7 +5,7 @@ import shutil
 import sqlite3
 import unittest
 
-from blockrand_run import SAMPLE, SOURCE, BuildTest, blockrand, extract, main, read_json
+from blockrand_run import SAMPLE, SOURCE, BuildTest, blockrand, extract, main, read_json, sha256
 
 FILES = os.path.join(SOURCE, 'tests', 'golden', 'rule_files', 'outset')
 WALLS = ('brick_bays', 'cornice_and_pilasters', 'mixed_elements', 'balconies', 'assets')
@@ -101,6 +101,30 @@ class RulesInBuild(BuildTest):
         self.assertEqual(shown['w1.w3'], '#ff0000')
         self.assertNotEqual(shown['w1.w2'], '#ff0000')
         self.valid(out)
+
+    def test_kept_work_knows_the_rules_of_parts_and_orders(self):
+        """The rule file of a preset that only a part's tag or an order names: an edit of it is no longer the kept tile."""
+        configs, cache = self.path('configs'), self.path('cache')
+        shutil.copytree(os.path.join(SOURCE, 'configs'), configs)
+        with open(self.street(), encoding='utf-8') as f:
+            street = self.place('kept.osm', f.read().replace('v="slab"', 'v="church"'))
+        orders = self.place('kept.toml', '[w1.w3]\npreset = "office"\n')
+        options = ('--lod', '3', '--configs', configs, '--overrides', orders)
+        seen = set()
+        for file, old, new in ((None, '', ''), ('sacred.cga', 'clamp(edge.eaves * 0.3,', 'clamp(edge.eaves * 0.25,'),
+                               ('office.cga', 'attr parapet = 0.95', 'attr parapet = 1.15')):
+            if file:
+                path = os.path.join(configs, 'grammars', file)
+                with open(path, encoding='utf-8') as f:
+                    text = f.read()
+                self.assertIn(old, text)
+                with open(path, 'w', encoding='utf-8') as f:
+                    f.write(text.replace(old, new))
+            out = self.build(street, f'kept.{file}', *options, '--cache', cache)
+            self.same_files(out, self.build(street, f'clean.{file}', *options))
+            folder = os.path.join(out, 'citygml')
+            seen.add(sha256(os.path.join(folder, os.listdir(folder)[0])))
+        self.assertEqual(len(seen), 3, 'each edit shows')
 
     def test_a_shipped_preset_runs_alone(self):
         for name in ('gruenderzeit', 'sacred', 'public', 'office', 'hall', 'outbuilding', 'parking_deck', 'slab'):
