@@ -203,4 +203,19 @@ ReferenceModel read_gltf(const std::string& path, const ReadOptions& options) {
   return model;
 }
 
+ReferenceModel read_gltf_axes(const std::string& path) {
+  ReferenceModel model;
+  model.path = path;
+  NoteLog notes;
+  GltfFile file(path, notes);
+  GltfScene(model, notes).add(file, path, kIdentity);
+  model.format = "glTF 2.0";
+  model.version = "2.0";
+  model.bytes = file.bytes();
+  if (model.polygons.empty())
+    throw base::InputError(path, "", "no triangle is drawn in it", "Is it the model that was meant?");
+  model.notes = notes.take();
+  return model;
+}
+
 }  // namespace blockrand::importers::reference

@@ -38,4 +38,9 @@ namespace blockrand::importers::reference {
 /// \throws base::UsageError  when `reference_crs` is no projected CRS in metres
 ReferenceModel read_gltf(const std::string& path, const ReadOptions& options = {});
 
+/// The same of one `.glb` or `.gltf` in its own axes: x right, y up, z towards the viewer, m. It may lie anywhere; `crs` says
+/// nothing.
+/// \throws base::InputError  as above, but for the place; and where it draws no triangle
+ReferenceModel read_gltf_axes(const std::string& path);
+
 }  // namespace blockrand::importers::reference

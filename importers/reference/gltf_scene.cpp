@@ -370,6 +370,21 @@ std::vector<std::size_t> GltfScene::triangles_of(const Json& primitive, std::siz
   return out;
 }
 
+std::optional<model::Colour> GltfScene::colour_of(const Json& material) const {
+  const auto number = index(material);
+  if (!number) return std::nullopt;
+  const Json& factor =
+      member(member(element(member(file_->json(), "materials"), *number), "pbrMetallicRoughness"), "baseColorFactor");
+  if (length(factor) < 3) return model::Colour{255, 255, 255};  // the default of the format
+  // Factors are linear, colours sRGB (IEC 61966-2-1).
+  const auto byte = [&](std::size_t i) {
+    const double linear = std::clamp(factor[i].is_number() ? factor[i].get<double>() : 1.0, 0.0, 1.0);
+    const double encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+    return static_cast<std::uint8_t>(std::floor(encoded * 255 + 0.5));
+  };
+  return model::Colour{byte(0), byte(1), byte(2)};
+}
+
 void GltfScene::add_primitive(const Json& primitive, std::size_t node, const Instance& instance) {
   const auto positions = file_->accessor(member(member(primitive, "attributes"), "POSITION"));
   if (!positions || positions->components != 3) return;
@@ -382,6 +397,7 @@ void GltfScene::add_primitive(const Json& primitive, std::size_t node, const Ins
     points[i] = apply(instance.transform,
                       {positions->values[3 * i], positions->values[3 * i + 1], positions->values[3 * i + 2]});
   const bool turned = mirrors(instance.transform);
+  const std::optional<model::Colour> colour = colour_of(member(primitive, "material"));
   Feature last;
   std::optional<Owner> owner;
   std::size_t bad = 0;
@@ -409,7 +425,7 @@ void GltfScene::add_primitive(const Json& primitive, std::size_t node, const Ins
     }
     geometries[0].faces.push_back({static_cast<std::uint32_t>(model_.polygons.size()), false});
     geometries[0].outer_faces = geometries[0].faces.size();
-    model_.polygons.push_back({{}, {a, b, c}, {}});
+    model_.polygons.push_back({{}, {a, b, c}, {}, colour});
   }
   if (bad > 0)
     notes_.add(NoteKind::bad_coordinates, 0, std::to_string(bad) + " triangles with a corner that is no point");

@@ -52,6 +52,8 @@ class GltfScene {
   void count_triangles(const Json& primitive, std::size_t instances);
   [[noreturn]] void refuse_number(std::size_t most, const std::string& what) const;
   std::vector<Instance> instances_of(const Json& node, const Matrix4& world);
+  /// What a material's faces look like without its images; none: there is no such material.
+  std::optional<model::Colour> colour_of(const Json& material) const;
   void add_primitive(const Json& primitive, std::size_t node, const Instance& instance);
   /// The feature of each vertex; empty where the file says none.
   std::vector<Feature> features_of(const Json& primitive, std::size_t vertices);

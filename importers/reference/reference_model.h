@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/model/colour.h"
 #include "pipeline/model/point.h"
 
 namespace blockrand::importers::reference {
@@ -19,6 +20,7 @@ struct Polygon3 {
   std::string id;  ///< gml:id; may be empty, and is where the format has none
   std::vector<model::Point3> outer;
   std::vector<std::vector<model::Point3>> holes;
+  std::optional<model::Colour> colour = {};  ///< of glTF materials; other formats' appearances are not read
 };
 
 /// A use of a polygon: several geometries share one through xlinks.

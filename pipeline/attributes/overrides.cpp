@@ -410,7 +410,8 @@ namespace {
 
 /// An entry that only keeps the buildings of a mapped area where they are.
 bool keeps_area(const OverrideEntry& entry, const model::Extract& extract) {
-  if (!entry.keeps_place || !entry.values.empty() || entry.side_pitches.any() || !entry.details.empty()) return false;
+  if (!entry.keeps_place || entry.model || !entry.values.empty() || entry.side_pitches.any() || !entry.details.empty())
+    return false;
   const auto found = std::lower_bound(extract.features.begin(), extract.features.end(), entry.object,
                                       [](const model::Feature& f, OsmId id) { return f.id < id; });
   return found != extract.features.end() && found->id == entry.object && found->area;

@@ -2,6 +2,7 @@
 // docs/districts.md.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -27,6 +28,21 @@ struct OverrideValue {
   int line = 0;
 };
 
+/// A model by somebody else that is to stand for a building.
+struct OverrideModel {
+  std::string file;  ///< as the entry names it
+  std::string path;  ///< of the file: beside the overrides
+  std::string source, licence;
+  std::string author;  ///< may be empty
+  /// Of glTF, which lies nowhere: longitude and latitude of its origin; none: the middle of the outline.
+  std::optional<std::array<double, 2>> at;
+  double turn = 0;     ///< degrees clockwise seen from above, about its origin; of glTF
+  double scale = 1;    ///< of glTF
+  double lift = 0;     ///< m of its lowest point above the ground
+  std::string sha256;  ///< of the file
+  int line = 0;
+};
+
 /// What is ordered for one building or part.
 struct OverrideEntry {
   model::OsmId object;    ///< the part where there is one
@@ -35,6 +51,7 @@ struct OverrideEntry {
   std::map<std::string, OverrideValue> values;  ///< by the name of the attribute (model::for_each_attribute)
   std::vector<model::DetailOverride> details;
   model::SidePitches side_pitches;     ///< roof_pitches, of single sides of the roof
+  std::optional<OverrideModel> model;  ///< of whole buildings
   bool keeps_place = false;            ///< imagery = "off": no image moves the building, or those in the area
   model::MappedAttributes tagged;      ///< what the tags said before, once applied
   std::vector<std::string> conflicts;  ///< tags that gave way because orders contradict them, in words

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 #include "pipeline/attributes/override_values.h"
 #include "pipeline/attributes/overrides.h"
 #include "pipeline/base/error.h"
+#include "pipeline/base/sha256.h"
 #include "pipeline/base/toml_file.h"
 
 namespace blockrand::attributes {
@@ -128,6 +131,17 @@ class Reader {
       entry.keeps_place = true;
     }
     details(table, body, entry);
+    if (auto model = table.table("model")) {
+      if (!(object == building))
+        table.fail("model", "replaces whole buildings", "Write it below [" + building.text() + "].");
+      entry.model = read_replacement(*model);
+      for (const char* unread : {"preset", "roof_shape", "roof_height", "roof_pitch", "roof_direction"})
+        if (entry.values.contains(unread))
+          table.fail(unread, "is read by nothing: a model replaces the building", "Leave one of the two out.");
+      if (!entry.details.empty())
+        table.fail("model", "replaces the building: nothing reads orders for its storeys, edges and bays",
+                   "Leave one of the two out.");
+    }
     bool holds_parts = false;
     if (object == building)
       for (const std::string& key : table.keys())
@@ -137,9 +151,40 @@ class Reader {
         }
     table.finish();
     const bool orders =
-        !entry.values.empty() || entry.side_pitches.any() || !entry.details.empty() || entry.keeps_place;
+        !entry.values.empty() || entry.side_pitches.any() || !entry.details.empty() || entry.keeps_place || entry.model;
     if (!orders && !holds_parts) table.fail("", "[" + body + "] orders nothing", "Leave it out.");
     if (orders) out_.entries.push_back(std::move(entry));
+  }
+
+  OverrideModel read_replacement(TomlTable& table) const {
+    OverrideModel out;
+    out.line = table.line();
+    const auto needed = [&](const char* key, const char* remedy) {
+      const std::string text = table.text(key).value_or("");
+      if (text.empty()) table.fail(key, "is missing", remedy);
+      return text;
+    };
+    out.file = needed("file", "Name a .glb, .gltf, CityGML or CityJSON file beside the overrides.");
+    out.source = needed("source", "Say where the model comes from.");
+    out.licence = needed("licence", "Say under which licence it may be used, for example \"CC BY 4.0\".");
+    out.author = table.text("author").value_or("");
+    std::filesystem::path path(out.file);
+    if (path.is_relative()) path = std::filesystem::path(out_.file).parent_path() / path;
+    out.path = path.string();
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(path, none))
+      table.fail("file", "is not there: " + out.path, "Paths are seen from the folder of the overrides.");
+    out.sha256 = base::sha256_file(out.path);
+    if (const auto at = table.numbers("at")) {
+      if (at->size() != 2 || std::abs((*at)[0]) > 180 || std::abs((*at)[1]) > 90)
+        table.fail("at", "is no place", "Write at = [longitude, latitude], in degrees.");
+      out.at = {(*at)[0], (*at)[1]};
+    }
+    out.turn = table.number("turn", -360, 360).value_or(0);
+    out.scale = table.number("scale", 1e-4, 1e4).value_or(1);
+    out.lift = table.number("lift", -100, 1000).value_or(0);
+    table.finish();
+    return out;
   }
 
   std::optional<OverrideValue> value(TomlTable& table, std::string_view key, double) {

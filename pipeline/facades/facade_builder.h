@@ -1,6 +1,7 @@
 // Builds the facade of one part after the other: what rules order on its walls and on its roof is gathered, then openings are cut
 // and told. One class, its functions by subject: facades.cpp derives, facade_orders.cpp takes what rules order,
-// facade_passages.cpp opens passages, facade_roof.cpp furnishes the roof, facade_cut.cpp cuts and tells. Internal to this folder.
+// facade_passages.cpp opens passages, facade_roof.cpp furnishes the roof, facade_cut.cpp cuts and tells, facade_footprint.cpp
+// runs rules that begin on the footprint. Internal to this folder.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +19,7 @@
 #include "pipeline/facades/facade_context.h"
 #include "pipeline/facades/facade_segments.h"
 #include "pipeline/facades/facades.h"
+#include "pipeline/facades/footprint_rules.h"
 #include "pipeline/facades/grammar_library.h"
 #include "pipeline/facades/openings.h"
 #include "pipeline/facades/passages.h"
@@ -41,8 +43,13 @@ struct Asked {
 class FacadeBuilder {
  public:
   FacadeBuilder(model::Report& report, ElementLibrary& library, const GrammarLibrary& grammars,
-                const attributes::Defaults& defaults, const FacadeOptions& options)
-      : report_(report), library_(library), grammars_(grammars), defaults_(defaults), options_(options) {}
+                const attributes::Defaults& defaults, const FacadeOptions& options, const model::Extract* extract)
+      : report_(report),
+        library_(library),
+        grammars_(grammars),
+        defaults_(defaults),
+        options_(options),
+        extract_(extract) {}
 
   /// \param mass  the roof that the part's LoD2 has; gets what is built on it. Null: nothing is
   void build(model::Building& building, model::BuildingPart& part, masses::BuiltMass* mass);
@@ -87,6 +94,17 @@ class FacadeBuilder {
 
   /// Of windows on the roof those go that do not fit in their front: rules order rows of them, as many as a rectangle takes.
   void keep_within(const std::vector<WallFrame>& walls, std::size_t first);
+
+  /// Rules that begin on the footprint: what they make is the part's LoD3, beside nothing of ours but the elements they order.
+  /// \param walls, segments  of the LoD2 solid
+  void build_on_footprint(const GrammarLibrary::Entry& grammar, const model::Building& building,
+                          model::BuildingPart& part, const std::vector<WallFrame>& walls,
+                          const std::vector<FacadeSegment>& segments, double eaves, std::uint64_t seed,
+                          std::uint64_t row);
+  /// An element on an upright leaf, and what is left of the leaf around its opening.
+  /// \return false: the leaf stays what it is
+  bool order_on_footprint(const grammar::Leaf& leaf, const grammar::Frame& frame, const model::PartMaterial& look,
+                          RuleSurfaces& surfaces, model::Detail& detail);
 
   void derive_segment(const GrammarLibrary::Entry& grammar, const FacadeContext& context, std::uint64_t seed,
                       std::uint64_t row);
@@ -205,6 +223,7 @@ class FacadeBuilder {
   const GrammarLibrary& grammars_;
   const attributes::Defaults& defaults_;
   const FacadeOptions& options_;
+  const model::Extract* extract_;                      ///< of the tags; may be null
   CornerRounding rounding_ = CornerRounding::nearest;  ///< of the part at work
   grammar::DeriveOptions derive_options_;
   grammar::AttributeMemo memo_;                         ///< of the part at work

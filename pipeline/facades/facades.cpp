@@ -24,7 +24,7 @@ using model::IssueCode;
 using model::Point2;
 
 void FacadeBuilder::build(model::Building& building, BuildingPart& part, masses::BuiltMass* mass) {
-  if (part.lod < 2 || part.lod2.empty() || part.canopy) return;
+  if (part.lod < 2 || part.lod2.empty() || !part.lod2.closed || part.canopy) return;
   // An order for a part alone gives it a front of its own.
   const GrammarLibrary::Entry* grammar = grammars_.find(part.attributes.preset.value);
   if (!grammar) return;
@@ -43,6 +43,8 @@ void FacadeBuilder::build(model::Building& building, BuildingPart& part, masses:
   const std::uint64_t row =
       base::random_bits(options_.seed, base::hash_text(building.situation.block), "row of facades");
   std::vector<FacadeSegment> segments = facade_segments(building, walls);
+  if (grammar->on_footprint)
+    return build_on_footprint(*grammar, building, part, walls, segments, eaves_level(part), seed, row);
   portals_ = take_portals(part, walls, segments);
   const double eaves = eaves_level(part);
   link_corners(segments, walls, eaves);
@@ -169,7 +171,7 @@ void build_facades(model::Region& region, const GrammarLibrary& grammars, const 
   base::share(stretches.size(), [&](std::size_t i) {
     Stretch& stretch = stretches[i];
     stretch.library = std::make_unique<ElementLibrary>(stretch.made, defaults);
-    FacadeBuilder builder(stretch.made.report, *stretch.library, grammars, defaults, options);
+    FacadeBuilder builder(stretch.made.report, *stretch.library, grammars, defaults, options, region.extract);
     for (std::size_t b = begins[i]; b < begins[i + 1]; ++b) {
       model::Building& building = region.buildings[b];
       if (!building.owned) continue;

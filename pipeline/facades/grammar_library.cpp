@@ -41,6 +41,13 @@ std::vector<std::string> list_folder(const std::string& folder) {
   return out;
 }
 
+/// Whether rules begin on what published files begin on: a lot or a footprint.
+bool begins_on_lot(const grammar::Program& program) {
+  constexpr std::string_view kLots[] = {"Lot", "LotInner", "LotCorner", "Parcel", "Footprint"};
+  return program.start_rule != grammar::kNone &&
+         std::ranges::find(kLots, program.qualified_name(program.definitions[program.start_rule])) != std::end(kLots);
+}
+
 }  // namespace
 
 std::vector<grammar::ExtensionOperation> extension_operations() {
@@ -85,6 +92,7 @@ struct GrammarLibrary::File {
   std::string path;
   grammar::Program program;
   bool makes_geometry = false;
+  bool begins_on_lot = false;  ///< as its start rule is called
   std::optional<grammar::Deriver> deriver;
 };
 
@@ -116,6 +124,7 @@ GrammarLibrary::GrammarLibrary(const std::string& folder, std::span<const Preset
       if (!errors.empty()) throw base::InputError(path, "", errors, "`blockrand grammar check` tells more");
       read->deriver.emplace(read->program);
       read->makes_geometry = makes_geometry(read->program);
+      read->begins_on_lot = begins_on_lot(read->program);
       files_.push_back(std::move(read));
       file = files_.end() - 1;
     }
@@ -128,7 +137,8 @@ GrammarLibrary::GrammarLibrary(const std::string& folder, std::span<const Preset
     const File* facade = file_of(preset.file, preset.beside);
     entry.deriver = &*facade->deriver;
     entry.makes_geometry = facade->makes_geometry;
-    if (!preset.roof_file.empty()) {
+    entry.on_footprint = preset.on_footprint.value_or(facade->begins_on_lot);
+    if (!preset.roof_file.empty() && !entry.on_footprint) {
       const File* roof = file_of(preset.roof_file, preset.beside);
       entry.roof = &*roof->deriver;
       entry.roof_makes_geometry = roof->makes_geometry;
@@ -206,7 +216,8 @@ GrammarLibrary read_grammars(const std::string& configs, std::span<const distric
     std::filesystem::path declared = std::filesystem::path(preset.declared_in).parent_path();
     if (!preset.declared_in.empty() && declared.empty()) declared = ".";
     grammars.push_back({preset.name, preset.grammar, preset.attributes,
-                        preset.roof_grammar.value_or(usual ? kUsualRoofRules : ""), declared.string()});
+                        preset.roof_grammar.value_or(usual ? kUsualRoofRules : ""), declared.string(),
+                        preset.on_footprint});
   }
   return {folder.string(), grammars};
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -33,6 +34,7 @@ struct PresetGrammar {
   std::vector<std::pair<std::string, std::string>> attributes;
   std::string roof_file{};  ///< the same, what stands on its roof; empty: no dormers, cross gables, ornamental gables
   std::string beside{};  ///< folder that is looked into first: that of the rule set which declares the preset; or empty
+  std::optional<bool> on_footprint{};  ///< its rules begin on the footprint; none: as the name of their start rule says
 };
 
 /// The grammars of all presets. Immutable once made; used by all threads.
@@ -42,6 +44,7 @@ class GrammarLibrary {
     std::string preset;
     std::string file;  ///< below the folder of grammars
     const grammar::Deriver* deriver = nullptr;
+    bool on_footprint = false;    ///< its rules begin on the footprint of a part, not on its walls
     bool makes_geometry = false;  ///< its rules make more than elements and bare pieces of the wall (rule_geometry.h)
     bool roof_makes_geometry = false;
     const grammar::Deriver* roof = nullptr;                          ///< of the rules for roofs; null: there are none

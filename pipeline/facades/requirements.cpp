@@ -283,7 +283,7 @@ void check_requirements(model::Region& region, const masses::BuiltMasses& built,
   for (std::uint32_t b = 0; b < region.buildings.size(); ++b) {
     Building& building = region.buildings[b];
     const BuildingPart* body = main_body(building);
-    if (!body || body->lod < 3) continue;
+    if (!body || body->lod < 3 || !body->lod3.solid.closed) continue;
     const auto preset = std::ranges::find(presets, body->attributes.preset.value, &districts::Preset::name);
     if (preset == presets.end() || !preset->requirements) continue;
     const auto number = static_cast<std::uint32_t>(body - building.parts.data());

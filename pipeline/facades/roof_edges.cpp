@@ -82,7 +82,7 @@ class RoofDresser {
     bool looked = false;
     for (std::uint32_t p = 0; p < building.parts.size(); ++p) {
       BuildingPart& body = building.parts[p];
-      if (body.canopy || body.lod < 3 || body.lod3.solid.empty()) continue;
+      if (body.canopy || body.lod < 3 || body.lod3.solid.empty() || !body.lod3.solid.closed) continue;
       const masses::BuiltMass* const standing = masses_.find({index, p});
       if (!standing) continue;
       if (!looked) others = others_near(building), looked = true;

@@ -75,7 +75,7 @@ class RoofInstaller {
   void furnish(model::Building& building, std::uint32_t index, model::Report& report) {
     left_out_ = {};
     BuildingPart* const body = main_body(building);
-    if (!body || body->lod < 3 || body->lod3.solid.empty()) return;
+    if (!body || body->lod < 3 || body->lod3.solid.empty() || !body->lod3.solid.closed) return;
     if (!has_hearths(building.attributes, defaults_)) return;
     const double area = geometry::area(body->roof_plan.outer.size() >= 3 ? body->roof_plan : body->plan);
     if (!(area >= kLeastPlan)) return;

@@ -12,8 +12,8 @@
 #include <string_view>
 #include <utility>
 
+#include "pipeline/facades/leaf_polygons.h"
 #include "pipeline/facades/openings.h"
-#include "styles/grammar/shapes/mesh_triangles.h"
 #include "styles/grammar/shapes/scope.h"
 
 namespace blockrand::facades {
@@ -39,111 +39,11 @@ constexpr double kLeastFilled = 0.6;
 /// m, deepest that geometry is sunk into a wall; elements reach no deeper (docs/elements.md).
 constexpr double kDeepest = 0.8;
 constexpr double kSmallest = 1e-6;  ///< m2, of a triangle
-
-constexpr std::size_t kMostCorners = 8;  ///< of a face that stays whole; others become triangles
-constexpr double kPlane = 0.001;         ///< m, of a whole face across its plane: a grid step
-constexpr double kOnceRound = 7;         ///< rad: between one turn and two
 /// Corners of all bodies of a wall: what is beyond is told, and left out. An asset of 20,000 corners in a hundred windows.
 constexpr std::size_t kMostWallCorners = 2'000'000;
 
-/// A leaf in the wall's coordinates.
-struct WallLeaf {
-  std::string symbol;
-  model::PartMaterial look;
-  std::vector<std::vector<Point3>> polygons;  ///< convex, counter-clockwise from outside
-  Point3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-};
-
-Point3 point(Vector3 v) { return {v.x, v.y, v.z}; }
-
-/// A face without holes whose corners all turn the same way.
-bool is_convex(const grammar::Mesh& mesh, const grammar::MeshFace& face) {
-  if (face.loops.size() != 1 || face.loops[0].size() < 3) return false;
-  const auto& loop = face.loops[0];
-  Vector3 first{};
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vector3 a = mesh.vertices[loop[i].vertex], b = mesh.vertices[loop[(i + 1) % loop.size()].vertex],
-                  c = mesh.vertices[loop[(i + 2) % loop.size()].vertex];
-    const Vector3 turn = grammar::cross(b - a, c - b);
-    if (grammar::length(turn) < kSmallest) continue;
-    if (grammar::length(first) == 0)
-      first = turn;
-    else if (grammar::dot(first, turn) < 0)
-      return false;
-  }
-  if (grammar::length(first) == 0 || loop.size() > kMostCorners) return false;
-  const Vector3 normal = grammar::normalized(first), at = mesh.vertices[loop[0].vertex];
-  for (const grammar::Corner& corner : loop)
-    if (std::fabs(grammar::dot(normal, mesh.vertices[corner.vertex] - at)) > kPlane) return false;
-  // Once round: stars turn the same way, too.
-  double turned = 0;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vector3 a = mesh.vertices[loop[i].vertex], b = mesh.vertices[loop[(i + 1) % loop.size()].vertex],
-                  c = mesh.vertices[loop[(i + 2) % loop.size()].vertex];
-    const double straight = grammar::dot(grammar::normalized(b - a), grammar::normalized(c - b));
-    turned += std::acos(std::clamp(straight, -1.0, 1.0));
-  }
-  return turned < kOnceRound;
-}
-
-/// Whether a symbol has one of the words: "WindowGlass", "window_glass", "Glass2"; "Panel" has no "pane".
-bool has_word(std::string_view symbol, std::initializer_list<std::string_view> words) {
-  std::string word;
-  const auto known = [&] { return std::find(words.begin(), words.end(), word) != words.end(); };
-  for (const char c : symbol) {
-    const auto u = static_cast<unsigned char>(c);
-    if (!std::isalpha(u) || (std::isupper(u) && !word.empty())) {
-      if (known()) return true;
-      word.clear();
-    }
-    if (std::isalpha(u)) word += static_cast<char>(std::tolower(u));
-  }
-  return known();
-}
-
-model::Colour colour_of(const grammar::Material& material) {
-  const auto byte = [&](std::size_t i) {
-    return static_cast<std::uint8_t>(std::clamp(std::floor(material.colour[i] * 255 + 0.5), 0.0, 255.0));
-  };
-  return {byte(0), byte(1), byte(2)};
-}
-
-WallLeaf in_wall(const Leaf& leaf, const model::PartMaterial& usual, const attributes::Defaults& defaults) {
-  WallLeaf out;
-  out.symbol = leaf.symbol.ends_with('.') ? leaf.symbol.substr(0, leaf.symbol.size() - 1) : leaf.symbol;
-  out.look = usual;
-  const grammar::Material* material = leaf.shape.material.get();
-  if (material) {  // somebody gave it looks, white among them
-    const bool coloured = material->colour != grammar::Material{}.colour;
-    if (coloured || material->colour_map.empty()) out.look.colour = colour_of(*material);
-    const char* name = material->colour[3] < 0.9 || has_word(out.symbol, {"glass", "pane", "panes", "glazing"})
-                           ? "glass"
-                       : material->metallic > 0.5 ? "metal"
-                                                  : "";
-    if (*name) out.look.material = static_cast<std::uint8_t>(std::max(defaults.material(name), 0));
-  }
-  const grammar::Mesh& mesh = *leaf.shape.mesh;
-  const grammar::Frame frame = grammar::scope_in_object(leaf.shape);
-  const auto placed = [&](std::uint32_t vertex) { return point(grammar::place(frame, mesh.vertices[vertex])); };
-  std::vector<bool> whole(mesh.faces.size());
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-    if ((whole[f] = is_convex(mesh, mesh.faces[f]))) {
-      auto& polygon = out.polygons.emplace_back();
-      for (const grammar::Corner& c : mesh.faces[f].loops[0]) polygon.push_back(placed(c.vertex));
-    }
-  if (std::find(whole.begin(), whole.end(), false) != whole.end())
-    for (const grammar::MeshTriangle& t : grammar::triangles_of(mesh))
-      if (!whole[t.face]) out.polygons.push_back({placed(t.vertices[0]), placed(t.vertices[1]), placed(t.vertices[2])});
-  for (const auto& polygon : out.polygons)
-    for (const Point3& p : polygon) {
-      out.low = {std::min(out.low.x, p.x), std::min(out.low.y, p.y), std::min(out.low.z, p.z)};
-      out.high = {std::max(out.high.x, p.x), std::max(out.high.y, p.y), std::max(out.high.z, p.z)};
-    }
-  return out;
-}
-
-bool is_flat(const WallLeaf& l) { return l.low.z > -kInPlane && l.high.z < kInPlane; }
-bool is_sunk(const WallLeaf& l) { return l.low.z <= -kInPlane; }
+bool is_flat(const LeafPolygons& l) { return l.low.z > -kInPlane && l.high.z < kInPlane; }
+bool is_sunk(const LeafPolygons& l) { return l.low.z <= -kInPlane; }
 
 double area_of(const std::vector<Point3>& polygon) {
   double twice = 0;
@@ -155,9 +55,9 @@ double area_of(const std::vector<Point3>& polygon) {
 }
 
 /// The look that most of the leaves in the wall's plane have: the wall itself gets it, so that few are painted on it.
-model::PartMaterial ground_look(const std::vector<WallLeaf>& leaves, const model::PartMaterial& usual) {
+model::PartMaterial ground_look(const std::vector<LeafPolygons>& leaves, const model::PartMaterial& usual) {
   std::vector<std::pair<model::PartMaterial, double>> areas{{usual, 0}};
-  for (const WallLeaf& l : leaves) {
+  for (const LeafPolygons& l : leaves) {
     if (!is_flat(l)) continue;
     auto of = std::find_if(areas.begin(), areas.end(), [&](const auto& a) { return a.first == l.look; });
     if (of == areas.end()) of = areas.insert(areas.end(), {l.look, 0});
@@ -245,14 +145,15 @@ class BodyBuilder {
 Point2 anchor_of(Point3 low, Point3 high) { return {(low.x + high.x) / 2, low.y}; }
 
 /// Leaves that lie in the wall, and what is before them, in one opening.
-RuleBody sunk_body(std::span<const WallLeaf* const> leaves, Point3 low, Point3 high, const model::PartMaterial& usual) {
+RuleBody sunk_body(std::span<const LeafPolygons* const> leaves, Point3 low, Point3 high,
+                   const model::PartMaterial& usual) {
   const Point2 anchor = anchor_of(low, high);
-  const WallLeaf* main = leaves[0];
-  const auto area = [](const WallLeaf& l) { return (l.high.x - l.low.x) * (l.high.y - l.low.y); };
-  for (const WallLeaf* l : leaves)
+  const LeafPolygons* main = leaves[0];
+  const auto area = [](const LeafPolygons& l) { return (l.high.x - l.low.x) * (l.high.y - l.low.y); };
+  for (const LeafPolygons* l : leaves)
     if (area(*l) > area(*main) + kSmallest) main = l;
   BodyBuilder builder(anchor, main->symbol, usual);
-  for (const WallLeaf* l : leaves) {
+  for (const LeafPolygons* l : leaves) {
     for (const auto& polygon : l->polygons) builder.add(polygon, l->look);
     builder.count();
   }
@@ -282,7 +183,7 @@ struct SunkBox {
   std::vector<std::size_t> leaves;
 };
 
-std::vector<SunkBox> sunk_boxes(const std::vector<WallLeaf>& leaves) {
+std::vector<SunkBox> sunk_boxes(const std::vector<LeafPolygons>& leaves) {
   std::vector<SunkBox> boxes;
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     if (!is_sunk(leaves[i])) continue;
@@ -412,10 +313,10 @@ RuleGeometry rule_geometry(std::span<const Leaf> leaves, const WallFrame& wall, 
                            const model::PartMaterial& usual, const model::PartMaterial* painted,
                            const attributes::Defaults& defaults) {
   RuleGeometry out;
-  std::vector<WallLeaf> made;
+  std::vector<LeafPolygons> made;
   for (const Leaf& leaf : leaves) {
     if (leaf.order || !leaf.shape.mesh) continue;
-    WallLeaf l = in_wall(leaf, usual, defaults);
+    LeafPolygons l = leaf_polygons(leaf, grammar::scope_in_object(leaf.shape), usual, defaults);
     if (l.polygons.empty()) continue;
     if (leaf.shape.material && !leaf.shape.material->colour_map.empty() &&
         std::find(out.textures.begin(), out.textures.end(), leaf.shape.material->colour_map) == out.textures.end())
@@ -429,7 +330,7 @@ RuleGeometry rule_geometry(std::span<const Leaf> leaves, const WallFrame& wall, 
     }
   }
   const model::PartMaterial shown = out.ground = painted ? *painted : ground_look(made, usual);
-  const auto is_bare = [&](const WallLeaf& l) { return is_flat(l) && l.look == shown; };
+  const auto is_bare = [&](const LeafPolygons& l) { return is_flat(l) && l.look == shown; };
   const std::vector<Rectangle> orders = rectangles_of_orders(leaves);
   // A body in an opening, or each leaf of it before the wall where none can be.
   std::vector<bool> in_opening(made.size(), false);
@@ -457,11 +358,11 @@ RuleGeometry rule_geometry(std::span<const Leaf> leaves, const WallFrame& wall, 
       for (const std::size_t i : box.leaves) forward[i] = kPaint - box.low.z;
       continue;
     }
-    std::vector<const WallLeaf*> together;
+    std::vector<const LeafPolygons*> together;
     for (const std::size_t i : box.leaves) together.push_back(&made[i]), in_opening[i] = true;
     // What the wall shows before the opening goes along: it would be cut away.
     for (std::size_t i = 0; i < made.size(); ++i) {
-      const WallLeaf& l = made[i];
+      const LeafPolygons& l = made[i];
       if (!is_flat(l) || in_opening[i] || l.low.x < box.low.x - kInPlane || l.high.x > box.high.x + kInPlane ||
           l.low.y < box.low.y - kInPlane || l.high.y > box.high.y + kInPlane)
         continue;
@@ -475,7 +376,7 @@ RuleGeometry rule_geometry(std::span<const Leaf> leaves, const WallFrame& wall, 
   std::size_t corners = 0;
   for (const RuleBody& body : out.bodies) corners += body.element.mesh.indices.size();
   for (std::size_t i = 0; i < made.size(); ++i) {
-    WallLeaf& l = made[i];
+    LeafPolygons& l = made[i];
     if (in_opening[i] || is_bare(l)) continue;
     for (const KeptFree& portal : portals)
       if (meets(portal, l.low, l.high)) l.polygons = without(l.polygons, portal);

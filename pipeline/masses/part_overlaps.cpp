@@ -18,6 +18,7 @@ constexpr double kCubicCentimetres = 0.01;  // m³; less is told in cm³
 
 double overlap(const model::Solid& a, const model::SolidTriangles& ta, const model::Solid& b,
                const model::SolidTriangles& tb) {
+  if (!a.closed || !b.closed) return 0;  // surfaces have no inside
   const double volume = geometry::common_volume({a.vertices, ta.triangles}, {b.vertices, tb.triangles});
   return volume > geometry::kLeastCommonVolume ? volume : 0;
 }

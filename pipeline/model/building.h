@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -265,6 +266,19 @@ struct SeenRoof {
   InferredCandidate<double> eaves;  ///< m above the ground around, of the edge that casts the shadow
 };
 
+/// A model by somebody else that stands for a building.
+struct ReplacementModel {
+  std::string file;  ///< as the override names it
+  std::string source, licence;
+  std::string author;  ///< may be empty
+  std::string order;   ///< "overrides.toml:12"
+};
+
+/// In one line, for outputs: "church.glb; A. Mason; CC BY 4.0; https://…".
+inline std::string text(const ReplacementModel& m) {
+  return m.file + (m.author.empty() ? "" : "; " + m.author) + "; " + m.licence + "; " + m.source;
+}
+
 struct Building {
   OsmId osm;
   std::uint32_t mapped_index = kNoIndex;  ///< into Extract::buildings
@@ -283,9 +297,10 @@ struct Building {
   SeenRoof seen_roof;              ///< and what an image shows
   StyleExplanation style_why;      ///< and what spoke for it
   std::vector<std::pair<std::string, std::string>> preset_parameters;  ///< by name; what district rules give the preset
-  std::vector<DetailOverride> detail_overrides;  ///< of its storeys, edges and bays, and of its parts'
-  Attributes attributes;                         ///< of the whole building
-  std::vector<BuildingPart> parts;               ///< at least one after `generate` unless nothing could be built
+  std::vector<DetailOverride> detail_overrides;      ///< of its storeys, edges and bays, and of its parts'
+  Attributes attributes;                             ///< of the whole building
+  std::vector<BuildingPart> parts;                   ///< at least one after `generate` unless nothing could be built
+  std::shared_ptr<const ReplacementModel> replaced;  ///< its only part's LoD2 is this model; null: it is not replaced
   bool has_mapped_parts = false;
   ObjectState settled = ObjectState::pending;  ///< duplicate or represented: another building stands for it
   OsmId related;                               ///< that one

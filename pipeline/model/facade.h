@@ -55,12 +55,20 @@ struct WallInstallation {
   SolidTriangles triangles;
 };
 
+/// Faces that one rule made, one after the other.
+struct RuleFaces {
+  std::string rule;  ///< symbol of the leaves: "Roof", "WindowGlass"
+  std::uint32_t first = 0, count = 0;
+};
+
 /// LoD3 of a body.
 struct Detail {
   /// The LoD2 solid with dormers, cross gables and openings. Faces of LoD2 come first, in their order, then those of dormers and
   /// cross gables, then reveals and what closes openings.
+  /// Not closed: what rules for footprints made, in `rules`; then nothing but placements stands beside it, on its face 0.
   Solid solid;
   SolidTriangles triangles;
+  std::vector<RuleFaces> rules;
   std::vector<Opening> openings;
   std::vector<Placement> placements;
   std::vector<WallInstallation> installations;

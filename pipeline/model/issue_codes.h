@@ -52,6 +52,8 @@ enum class IssueClass : std::uint8_t {
     "A rule asked for what cannot be made; the rest of the facade was built.")                                       \
   X(leaf_dropped, "LEAF_DROPPED", fallback,                                                                          \
     "What a rule made has no place in the model; the rest of the facade was built.")                                 \
+  X(model_not_closed, "MODEL_NOT_CLOSED", fallback,                                                                  \
+    "The model that replaces the building bounds no volume; its surfaces stand as they are.")                        \
   X(plan_simplified, "PLAN_SIMPLIFIED", fallback, "The plan was simplified to get a valid solid.")                   \
   X(rest_failed, "REST_FAILED", fallback, "The part of the outline that its parts leave free could not be built.")   \
   /* mended, ignored, unreadable */                                                                                  \
@@ -90,6 +92,8 @@ enum class IssueClass : std::uint8_t {
     "A roof along whole facades does not fit the plan; every bay has its own slopes.")                               \
   X(override_unmatched, "OVERRIDE_UNMATCHED", notice,                                                                \
     "An entry of the overrides has nothing in the extract to act on.")                                               \
+  X(building_replaced, "BUILDING_REPLACED", notice,                                                                  \
+    "A model that the overrides name stands for the building; its source and licence are told with it.")             \
   X(parameter_unread, "PARAMETER_UNREAD", notice,                                                                    \
     "A parameter, tag or order that nothing reads: the rule file of the preset asks for no such name.")              \
   X(text_cleaned, "TEXT_CLEANED", notice, "Characters that no XML file may hold were replaced in a tag.")            \

@@ -42,7 +42,8 @@ struct Face {
   std::int32_t edge = -1;                        ///< the plan edge that this wall or roof face rises from; -1 for none
 };
 
-/// A closed boundary, stored as indexed faces with loops. All coordinates lie on the 1/1024 m grid.
+/// A closed boundary, or surfaces that need not bound anything, stored as indexed faces with loops. All coordinates lie on the
+/// 1/1024 m grid.
 struct Solid {
   struct Loop {
     std::uint32_t first = 0, count = 0;  ///< into Solid::indices
@@ -51,6 +52,8 @@ struct Solid {
   std::vector<std::uint32_t> indices;
   std::vector<Loop> loops;
   std::vector<Face> faces;
+  /// False: surfaces as rules for footprints or the model of a landmark made them. CityGML calls them a MultiSurface.
+  bool closed = true;
 
   bool empty() const { return faces.empty(); }
   std::span<const Loop> loops_of(const Face& f) const { return std::span(loops).subspan(f.first_loop, f.loop_count); }

@@ -61,15 +61,15 @@ TileStatistics count_statistics(const model::Region& region) {
     s.buildings += !building.parts.empty();
     s.bodies += building.parts.size();
     for (const model::BuildingPart& part : building.parts) {
-      if (part.lod >= 2) {
+      if (part.lod >= 2 && part.lod2.closed) {
         s.volume += geometry::volume(part.lod2, part.lod2_triangles);
         ++s.solids_lod2;
-      } else if (part.lod == 1) {
+      } else if (part.lod >= 1) {  // surfaces have no volume: that of the block
         s.volume += geometry::volume(part.lod1, part.lod1_triangles);
       }
       s.solids_lod1 += !part.lod1.empty();
       if (part.lod >= 3 && !part.lod3.solid.empty()) {
-        ++s.solids_lod3;
+        s.solids_lod3 += part.lod3.solid.closed;
         for (const model::Opening& opening : part.lod3.openings) {
           s.windows += opening.kind == model::OpeningKind::window;
           s.doors += opening.kind == model::OpeningKind::door;

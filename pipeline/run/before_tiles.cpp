@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <vector>
 
@@ -42,6 +43,9 @@ model::Report override_extract(const BuildOptions& options, BuildInputs& inputs,
                                base::Progress& progress) {
   model::Report report;
   attributes::apply_overrides(inputs.overrides, extract, report);
+  if (options.lod < 2 &&
+      std::ranges::any_of(inputs.overrides.entries, [](const auto& e) { return e.model.has_value(); }))
+    progress.warn(options.overrides + ": models replace their buildings from --lod 2 on; nothing reads them here");
   if (inputs.tile) report.rows.clear();
   if (!report.rows.empty())
     progress.warn(fmt::format(

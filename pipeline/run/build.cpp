@@ -418,6 +418,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   const context::Ground ground(inputs.terrain ? &*inputs.terrain : nullptr, options.ground_height, projection);
   std::atomic<std::int64_t> context_time = 0;
   const evidence::StyleInputs style_inputs{prepared.facts, prepared.tags, prepared.styles, inputs.tables};
+  const masses::LandmarkModels landmarks = place_landmarks(inputs.landmarks, projection, inputs.defaults);
   const TileInputs tile_inputs{.extract = extract,
                                .shards = shards,
                                .projection = projection,
@@ -431,6 +432,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
                                .neighbours = neighbours,
                                .assigner = assigner,
                                .overrides = inputs.overrides,
+                               .landmarks = landmarks,
                                .styles = style_inputs,
                                .imagery = imagery.observations(),
                                .explain = options.outputs.explain,

@@ -53,6 +53,7 @@ BuildInputs::BuildInputs(const BuildOptions& options)
       rules(attributes::read_rule_sets(options.configs, options.districts)) {
   if (options.lod >= 3) grammars.emplace(facades::read_grammars(options.configs, rules.book.presets));
   overrides = open_overrides(options.overrides, defaults, rules.book);
+  if (options.lod >= 2) landmarks = read_landmarks(overrides);
 }
 
 std::string BuildInputs::rule_file(std::string_view preset) const {
@@ -80,6 +81,10 @@ std::vector<InputFile> input_files(const BuildOptions& options, const BuildInput
     files.back().path = name;
   }
   if (!options.overrides.empty()) files.push_back(input_file("overrides", options.overrides));
+  for (const ReadLandmark& landmark : inputs.landmarks) {
+    files.push_back(input_file("model", landmark.order.path));
+    files.back().path = landmark.order.file;
+  }
   return files;
 }
 

@@ -14,6 +14,7 @@
 #include "pipeline/context/height_reference.h"
 #include "pipeline/facades/grammar_library.h"
 #include "pipeline/run/documents.h"
+#include "pipeline/run/landmarks.h"
 #include "pipeline/run/options.h"
 #include "pipeline/run/tile_choice.h"
 #include "styles/classify/classify.h"
@@ -34,6 +35,7 @@ struct BuildInputs {
   attributes::ReadRuleSets rules;
   std::optional<facades::GrammarLibrary> grammars;  ///< of LoD3
   attributes::Overrides overrides;
+  std::vector<ReadLandmark> landmarks;  ///< models that overrides put in the place of buildings; from LoD2 on
 
   /// The rule file of a preset; empty for one without, or where facades were not asked for.
   std::string rule_file(std::string_view preset) const;

@@ -274,7 +274,8 @@ std::string shared_key(const BuildOptions& options, const BuildInputs& inputs, c
   for (const auto& [name, path] : inputs.rules.files)
     if (!name.starts_with("styles/") || name == "styles/presets.toml") by_building.insert(name);
   for (const InputFile& file : record.inputs)
-    if (file.role != "overrides" && !by_building.contains(file.path) && !file.path.starts_with("grammars/"))
+    if (file.role != "overrides" && file.role != "model" && !by_building.contains(file.path) &&
+        !file.path.starts_with("grammars/"))
       out << file.role << file.path << file.sha256;
   // Of a terrain all files: a VRT names others, and some lie beside the one that is named.
   if (inputs.terrain)

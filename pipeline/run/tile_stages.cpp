@@ -152,7 +152,9 @@ Region run_tile(std::size_t shard, const TileInputs& in) {
       if (b.attributes.ground_height.source != model::Source::terrain)
         region.report.add(b.osm, model::IssueCode::terrain_missing);
   cover_party_walls(region, in);
+  if (in.lod >= 2) masses::join_replaced(region, in.landmarks);
   masses::BuiltMasses built = masses::build_masses(region, in.defaults, in.generate, std::min(in.lod, 2));
+  if (in.lod >= 2) masses::replace_buildings(region, in.landmarks);
   if (in.lod >= 3 && in.grammars) {
     facades::build_facades(region, *in.grammars, in.defaults, {in.seed}, &built);
     facades::add_roof_installations(region, built, in.defaults, {in.seed});

@@ -22,6 +22,7 @@
 #include "pipeline/footprints/roof_lines.h"
 #include "pipeline/footprints/shard.h"
 #include "pipeline/georef/projection.h"
+#include "pipeline/masses/replace_buildings.h"
 #include "pipeline/model/region.h"
 #include "pipeline/observation/imagery.h"
 
@@ -42,6 +43,7 @@ struct TileInputs {
   const context::TaggedNeighbours& neighbours;
   const attributes::DistrictAssigner& assigner;
   const attributes::Overrides& overrides;
+  const masses::LandmarkModels& landmarks;
   const evidence::StyleInputs& styles;
   const observation::ImageryObservations* imagery = nullptr;  ///< null: no images
   bool explain = true;                                        ///< reasons are kept

@@ -139,6 +139,15 @@ void CityGmlParser::start_gml(xmlTextReaderPtr reader, std::string_view name, co
     body()->solids.push_back(std::move(solid));
     in_solid_ = true;
     solid_id_ = id;
+  } else if (name == "MultiSurface" && body() && (parent() == "lod2MultiSurface" || parent() == "lod3MultiSurface") &&
+             (parent(2) == "Building" || parent(2) == "BuildingPart")) {
+    ReadSolid surfaces;
+    surfaces.lod = parent()[3] - '0';
+    surfaces.closed = false;
+    body()->solids.push_back(std::move(surfaces));
+    in_solid_ = true;
+    solid_id_ = id;
+    group_ids_.push_back(id);
   } else if (name == "surfaceMember") {
     const std::string href = attribute(reader, "href", kLink);
     if (href.empty()) return;
@@ -253,6 +262,7 @@ void CityGmlParser::end() {
       rule("a solid without faces", object());
     in_solid_ = false;
   } else if (name == "MultiSurface" || name == "CompositeSurface") {
+    if (name == "MultiSurface" && in_solid_) in_solid_ = false;  // a body's own; solids hold none
     if (!group_ids_.empty()) group_ids_.pop_back();
   } else if (!surface_kind(name).empty() && parent() == "boundedBy") {
     surface_.clear();

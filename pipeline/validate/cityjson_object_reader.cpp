@@ -196,7 +196,7 @@ class ObjectReader {
       }
       ReadBody own;
       read_geometry(g, own);
-      if (own.solids.size() != 1 || own.solids[0].lod != 3) {
+      if (own.solids.size() != 1 || own.solids[0].lod != 3 || !own.solids[0].closed) {
         rule("has a geometry that is no solid of LoD 3");
         continue;
       }
@@ -255,7 +255,9 @@ class ObjectReader {
     const int depth = surface_depth(type);
     if (depth == 0) return rule(fmt::format("has a geometry of the type \"{}\"", type));
     if (!is_lod(lod)) return rule("has a geometry whose lod is no text of the form 2 or 2.1");
-    if ((lod[0] == '0') != (depth == 1)) rule(fmt::format("has a {} of LoD {}", type, lod));
+    // Surfaces of a landmark's model or of rules for footprints stand where a solid would.
+    const bool surfaces_alone = depth == 1 && (lod[0] == '2' || lod[0] == '3');
+    if ((lod[0] == '0') != (depth == 1) && !surfaces_alone) rule(fmt::format("has a {} of LoD {}", type, lod));
     const Json* boundaries = member(g, "boundaries");
     if (!boundaries || !boundaries->is_array()) return rule("has a geometry without boundaries");
     where_ = fmt::format("its {} of LoD {}", type, lod);
@@ -267,16 +269,16 @@ class ObjectReader {
     const Json* single = nullptr;
     const Json* colours = material(g, single);
     surfaces(*boundaries, depth, kinds, colours, single);
-    if (depth == 1) {
+    if (depth == 1 && !surfaces_alone) {
       for (ReadPolygon& p : polygons_) body.footprint.push_back(std::move(p));
     } else {
-      if (polygons_.size() < 4) rule(fmt::format("{} has {} faces", where_, polygons_.size()));
+      if (polygons_.size() < 4 && !surfaces_alone) rule(fmt::format("{} has {} faces", where_, polygons_.size()));
       // A second solid of LoD 3, which is found, leaves it open which one has the openings.
       const bool another =
           std::any_of(body.solids.begin(), body.solids.end(), [](const ReadSolid& s) { return s.lod == 3; });
       if (lod[0] == '3' && another) body.detail.openings.clear();
       if (lod[0] == '3' && !another) openings(body);
-      body.solids.push_back({lod[0] - '0', std::move(polygons_)});
+      body.solids.push_back({lod[0] - '0', std::move(polygons_), !surfaces_alone});
     }
     polygons_.clear();
   }

@@ -20,10 +20,11 @@ struct ReadPolygon {
   std::string colour;  ///< "#rrggbb" in sRGB; empty where not said
 };
 
-/// A closed boundary as read, in the build CRS (GLB: in its own frame).
+/// A closed boundary as read, or a MultiSurface in its place, in the build CRS (GLB: in its own frame).
 struct ReadSolid {
   int lod = 0;
   std::vector<ReadPolygon> polygons;
+  bool closed = true;  ///< false: a MultiSurface, which need not bound anything
 };
 
 /// A window or door in a wall of a LoD3 solid.

@@ -125,6 +125,13 @@ SolidValidity validity_by(const OwnValidator& own_validator, const CgalValidator
 
 }  // namespace
 
+SolidValidity surfaces_validity(const ReadSolid& surfaces) {
+  constexpr int kShellCodes = 300;  // from here on they are about the shell, not about its polygons
+  const Own said = said_by([&] { return own_validity(surfaces); });
+  if (said.number == 0 || said.number >= kShellCodes) return {};
+  return {said.text, said.text, said.number};
+}
+
 std::string SolidValidity::text() const {
   return fmt::format("own checker: {}; CGAL: {}", own.empty() ? "valid" : own, cgal.empty() ? "valid" : cgal);
 }

@@ -24,6 +24,9 @@ struct SolidValidity {
 /// Of a solid whose points lie on the 1/1024 m grid.
 SolidValidity validator(const ReadSolid& solid);
 
+/// Of surfaces that need not bound anything: their polygons alone (codes of ISO 19107 below 300), by our own checker.
+SolidValidity surfaces_validity(const ReadSolid& surfaces);
+
 /// Of a mesh of triangles, whose corners are equal only when their coordinates are.
 SolidValidity validator(const std::vector<GlbTriangle>& triangles);
 

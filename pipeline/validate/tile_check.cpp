@@ -154,6 +154,13 @@ class Checker {
       // A footprint laid on the ground is no solid.
       if (glb.triangles[i].empty() || level == 0 || detailed || (lod != body.attributes.end() && lod->second == "0"))
         continue;
+      // The model of a landmark is told to bound nothing.
+      const auto told = body.attributes.find("fallbacks");
+      if (level >= 2 && told != body.attributes.end() &&
+          told->second.find(model::info(model::IssueCode::model_not_closed).text) != std::string::npos) {
+        unsound_.insert(body.id);
+        continue;
+      }
       ++out_.validated;
       const SolidValidity validity = validator(glb.triangles[i]);
       if (!validity.valid()) unsound_.insert(body.id);
@@ -184,7 +191,8 @@ class Checker {
   void validate_body(const ReadBody& body, const std::string& file) {
     for (const ReadSolid& solid : body.solids) {
       ++out_.validated;
-      const SolidValidity validity = validator(solid);
+      const SolidValidity validity = solid.closed ? validator(solid) : surfaces_validity(solid);
+      if (!solid.closed) unsound_.insert(body.id);  // what encloses nothing cannot overlap
       if (!validity.valid()) unsound_.insert(body.id);
       note(validity, file, body.id, fmt::format("LoD {}", solid.lod), out_.findings);
     }
@@ -217,7 +225,7 @@ class Checker {
   static bool same_solids(const ReadBody& a, const ReadBody& b) {
     return std::equal(
         a.solids.begin(), a.solids.end(), b.solids.begin(), b.solids.end(), [](const ReadSolid& x, const ReadSolid& y) {
-          return x.lod == y.lod &&
+          return x.lod == y.lod && x.closed == y.closed &&
                  std::equal(x.polygons.begin(), x.polygons.end(), y.polygons.begin(), y.polygons.end(),
                             [](const ReadPolygon& p, const ReadPolygon& q) { return p.rings == q.rings; });
         });
@@ -522,7 +530,7 @@ class Checker {
 
   static void count_detail(const ReadBody& body, FormatCounts& n) {
     for (const ReadSolid& solid : body.solids) {
-      ++n.solids[std::clamp(solid.lod, 0, 3)];
+      n.solids[std::clamp(solid.lod, 0, 3)] += solid.closed;
       for (const ReadPolygon& polygon : solid.polygons) {
         n.windows += polygon.kind == "window";
         n.doors += polygon.kind == "door";

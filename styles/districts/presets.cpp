@@ -81,6 +81,14 @@ Preset read_preset(const std::string& name, base::TomlTable table) {
   preset.substyles = table.texts("substyles").value_or(std::vector<std::string>{});
   preset.grammar = table.text("grammar").value_or("");
   preset.roof_grammar = table.text("roof_grammar");
+  if (const auto shape = table.text("initial_shape")) {
+    if (*shape != "wall" && *shape != "footprint")
+      table.fail("initial_shape", "is unknown: '" + *shape + "'", "Write wall or footprint.");
+    preset.on_footprint = *shape == "footprint";
+    if (*preset.on_footprint && preset.roof_grammar)
+      table.fail("roof_grammar", "is read by nothing: rules that begin on a footprint make the roof as well",
+                 "Leave it out.");
+  }
   if (auto values = table.table("attributes")) {
     for (const std::string& key : values->keys()) preset.attributes.emplace_back(key, values->text(key).value_or(""));
     values->finish();

@@ -53,6 +53,8 @@ struct Preset {
   model::StyleClass style = model::StyleClass::other;
   std::vector<std::string> substyles;  ///< ids of the catalogue of styles that it is meant for
   std::string grammar{};  ///< rule file below configs/grammars, or beside the rule set; empty: walls stay closed
+  std::optional<bool>
+      on_footprint{};  ///< `initial_shape`: its rules begin on the footprint, or on walls; none: as they say
   /// The same for what stands on its roof; none: the usual one (roofscape.cga); empty: nothing stands there.
   std::optional<std::string> roof_grammar{};
   std::vector<std::pair<std::string, std::string>> attributes{};  ///< values of the rule files' attributes, by name

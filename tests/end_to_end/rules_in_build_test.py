@@ -8,6 +8,9 @@ import unittest
 from blockrand_run import SAMPLE, SOURCE, BuildTest, blockrand, extract, main, read_json, sha256
 
 FILES = os.path.join(SOURCE, 'tests', 'golden', 'rule_files', 'outset')
+INDEPENDENT = os.path.join(SOURCE, 'tests', 'golden', 'rule_files', 'independent')
+LOTS = ('church_like', 'courtyard_house', 'office_tower', 'plain_block', 'roofs_by_tag') + tuple(sorted(
+    name[:-4] for name in os.listdir(INDEPENDENT) if name.endswith('.cga')))
 WALLS = ('brick_bays', 'cornice_and_pilasters', 'mixed_elements', 'balconies', 'assets')
 PRIOR = '[prior]\nstyle = { gruenderzeit = 0.3, tenement = 0.1, modern = 0.5, other = 0.1 }\n'
 STREET = '''<?xml version='1.0' encoding='UTF-8'?>
@@ -35,7 +38,8 @@ class RulesInBuild(BuildTest):
         os.makedirs(folder, exist_ok=True)
         text = 'title = "files of others"\n'
         for name in files:
-            shutil.copy(os.path.join(FILES, name + '.cga'), folder)
+            own = os.path.join(FILES, name + '.cga')
+            shutil.copy(own if os.path.exists(own) else os.path.join(INDEPENDENT, name + '.cga'), folder)
             text += f'[presets.{name}]\ndescription = "{name}"\nclass = "other"\ngrammar = "{name}.cga"\n'
         share = ', '.join(f'{name} = {1 / len(files)}' for name in files)
         path = os.path.join(folder, 'set.toml')
@@ -65,6 +69,47 @@ class RulesInBuild(BuildTest):
             again = self.build(data, 'again', '--lod', '3', '--districts', self.rule_set(WALLS), '-j', '1')
             self.same_files(out, again)
             shutil.rmtree(again)
+
+    def test_rule_files_that_begin_on_a_footprint(self):
+        """Fifteen files of others, written before they could be built, on a real block: the whole house is theirs."""
+        for data in (SAMPLE, extract('berlin-zionskirchplatz-2020.osm')):
+            if not data or not os.path.exists(data):
+                continue
+            out = self.build(data, os.path.basename(data) + '.lots', '--lod', '3', '--districts', self.rule_set(LOTS))
+            self.assertEqual(codes(out, 'LEAF_DROPPED'), [])
+            self.assertEqual(codes(out, 'PARAMETER_UNREAD'), [])
+            for row in codes(out, 'GRAMMAR_ERROR'):
+                self.assertIn('the image ', row['detail'])  # colours alone are shown
+            self.valid(out)
+            db = sqlite3.connect(os.path.join(out, 'buildings.gpkg'))
+            worn = dict(db.execute('select preset, count(*) from parts where lod = 3 group by preset'))
+            self.assertEqual(set(worn), set(LOTS) if sum(worn.values()) > 300 else set(worn))
+            text = ''.join(open(os.path.join(out, 'citygml', name), encoding='utf-8').read() for name in os.listdir(os.path.join(out, 'citygml')))
+            self.assertEqual(text.count('<bldg:lod3MultiSurface><MultiSurface gml:id='), db.execute('select count(*) from parts where lod = 3').fetchone()[0])
+            for rule in ('SlabBand', 'Chimney', 'Storey'):  # of osm_massing.cga
+                self.assertIn(f'<gml:name>{rule}</gml:name>', text)
+            self.assertNotIn('<bldg:lod3Solid>', text)
+            again = self.build(data, 'again', '--lod', '3', '--districts', self.rule_set(LOTS), '-j', '1')
+            self.same_files(out, again)
+            shutil.rmtree(again)
+
+    def test_initial_shape_as_ordered(self):
+        rules = self.rule_set(['plain_block'])
+        with open(rules, encoding='utf-8') as f:
+            text = f.read()
+        for shape, solid in (('footprint', '<bldg:lod3MultiSurface><MultiSurface gml:id='), ('wall', '<bldg:lod3Solid>')):
+            with open(rules, 'w', encoding='utf-8') as f:
+                f.write(text.replace('class = "other"', f'class = "other"\ninitial_shape = "{shape}"'))
+            out = self.build(self.street(), shape, '--lod', '3', '--districts', rules, '--overrides',
+                             self.place('whole.toml', '[w1]\npreset = "plain_block"\n[w1.w2]\npreset = "plain_block"\n'))
+            city = ''.join(open(os.path.join(out, 'citygml', name), encoding='utf-8').read() for name in os.listdir(os.path.join(out, 'citygml')))
+            self.assertIn(solid, city, shape)
+            self.valid(out)
+        with open(rules, 'w', encoding='utf-8') as f:
+            f.write(text.replace('class = "other"', 'class = "other"\ninitial_shape = "lot"'))
+        run = blockrand('districts', 'check', rules)
+        self.assertEqual(run.code, 2, run)
+        self.assertRegex(run.err, 'initial_shape.*wall or footprint')
 
     def test_what_nothing_reads_is_told(self):
         rules = self.rule_set(['brick_bays'], '[[rule]]\nname = "typo"\nlevel = "city"\nparameters = { ornamnet = 0.7 }\n')

@@ -48,6 +48,13 @@ void AppearanceText::add_detail(const model::Solid& lod2, const model::Detail& d
   }
 }
 
+void AppearanceText::add_rules(const model::Solid& lod3, std::string_view id) {
+  for (std::size_t f = 0; f < lod3.faces.size(); ++f) {
+    append_detail_polygon_id(target(look_of(lod3.faces[f])), id, f);
+    close();
+  }
+}
+
 void AppearanceText::add_body(const model::Solid& solid, std::string_view id) {
   if (!has_one_look(solid)) return add(solid, id);
   if (solid.faces.empty()) return;

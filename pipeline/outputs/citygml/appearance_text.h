@@ -26,6 +26,9 @@ class AppearanceText {
   /// What a LoD3 solid has beside the polygons of its LoD2 solid: walls with their reveals, windows and doors.
   void add_detail(const model::Solid& lod2, const model::Detail& detail, std::string_view id);
 
+  /// The polygons "<id>_q<face>" of what rules for footprints made.
+  void add_rules(const model::Solid& lod3, std::string_view id);
+
   /// A body that GeometryText::multi_surface() wrote, with ids of its polygons unless it has one look.
   void add_body(const model::Solid& solid, std::string_view id);
 

@@ -65,6 +65,8 @@ Envelope envelope(const model::Region& region, int lod, bool lean) {
       if (lod >= 2)
         for (const model::Point3& p : part.lod2.vertices) box.add(p);
       if (lod < 3) continue;
+      if (!part.lod3.solid.closed)
+        for (const model::Point3& p : part.lod3.solid.vertices) box.add(p);
       for (const model::Placement& p : part.lod3.placements) {
         if (lean && p.opening != model::kNoOpening) continue;
         if (const auto* corners = placed.corners(p))
@@ -227,6 +229,10 @@ class BuildingText {
         close_generic("stringAttribute");
       }
     }
+    if (building && building->replaced) {
+      generic_text("origin", "replaced");
+      generic_text("replaced_by", model::text(*building->replaced));
+    }
     if (building) imagery(building->osm);
     osm_tags(tags);
 
@@ -311,17 +317,37 @@ class BuildingText {
     }
     if (!lod2) return;
     const bool lod3 = options_.lod >= 3 && part.lod >= 3 && !part.lod3.solid.empty();
-    out_ += "<bldg:lod2Solid>";
-    if (lod3)
+    const bool by_rules = lod3 && !part.lod3.solid.closed;
+    out_ += part.lod2.closed ? "<bldg:lod2Solid>" : "<bldg:lod2MultiSurface>";
+    if (lod3 && !by_rules)
       geometry_.solid_beside_detail(part.lod2, part.lod3.solid, id + "_lod2", id);
     else
       geometry_.solid(part.lod2, id + "_lod2", id);
-    out_ += "</bldg:lod2Solid>\n";
+    out_ += part.lod2.closed ? "</bldg:lod2Solid>\n" : "</bldg:lod2MultiSurface>\n";
     appearance_.add(part.lod2, id);
-    if (lod3)
+    if (by_rules)
+      made_by_rules(part, id);
+    else if (lod3)
       detail(part, id);
     else
       geometry_.surfaces(part.lod2, id);
+  }
+
+  /// What rules for footprints made stands for LoD3: elements, the surfaces of both levels, the MultiSurface.
+  void made_by_rules(const model::BuildingPart& part, const std::string& id) {
+    std::size_t number = 0;
+    for (const model::Placement& p : part.lod3.placements) {
+      if (!has_shape(*region_.elements.at(p.element).element)) continue;
+      open_installation(id, number++, region_.elements.at(p.element).element->kind);
+      implicit(p);
+      out_ += "</bldg:BuildingInstallation></bldg:outerBuildingInstallation>\n";
+    }
+    geometry_.surfaces(part.lod2, id);
+    geometry_.surfaces_of_rules(part.lod3, id);
+    appearance_.add_rules(part.lod3.solid, id);
+    out_ += "<bldg:lod3MultiSurface>";
+    geometry_.rule_surfaces(part.lod3.solid, id + "_lod3", id);
+    out_ += "</bldg:lod3MultiSurface>\n";
   }
 
   /// What stands on walls, the surfaces of both levels with windows and doors, and the solid of LoD3.

@@ -1,5 +1,6 @@
 #include "pipeline/outputs/citygml/geometry_text.h"
 
+#include <array>
 #include <cmath>
 
 #include "pipeline/geometry/polygon_measures.h"
@@ -115,19 +116,28 @@ void GeometryText::reference(std::string_view id, std::size_t face, Mark mark) {
   out_ += "\"/>\n";
 }
 
-void GeometryText::begin_solid(std::string_view solid_id) {
-  out_ += "<Solid gml:id=\"";
+void GeometryText::begin_solid(std::string_view solid_id, bool closed) {
+  out_ += closed ? "<Solid gml:id=\"" : "<MultiSurface gml:id=\"";
   out_ += solid_id;
-  out_ += "\"><exterior><CompositeSurface>\n";
+  out_ += closed ? "\"><exterior><CompositeSurface>\n" : "\">\n";
 }
 
-void GeometryText::end_solid() { out_ += "</CompositeSurface></exterior></Solid>"; }
+void GeometryText::end_solid(bool closed) {
+  out_ += closed ? "</CompositeSurface></exterior></Solid>" : "</MultiSurface>";
+}
 
 void GeometryText::solid(const model::Solid& solid, std::string_view solid_id, std::string_view id) {
   load_vertices(solid);
-  begin_solid(solid_id);
+  begin_solid(solid_id, solid.closed);
   for (std::size_t f = 0; f < solid.faces.size(); ++f) polygon(solid, f, id, id.empty() ? Mark::none : Mark::polygon);
-  end_solid();
+  end_solid(solid.closed);
+}
+
+void GeometryText::rule_surfaces(const model::Solid& lod3, std::string_view surface_id, std::string_view id) {
+  load_vertices(lod3);
+  begin_solid(surface_id, false);
+  for (std::size_t f = 0; f < lod3.faces.size(); ++f) polygon(lod3, f, id, Mark::detail);
+  end_solid(false);
 }
 
 void GeometryText::solid_beside_detail(const model::Solid& lod2, const model::Solid& lod3, std::string_view solid_id,
@@ -151,11 +161,11 @@ void GeometryText::detail_solid(const model::Solid& lod2, const model::Solid& lo
   end_solid();
 }
 
-void GeometryText::open_surface(std::string_view name, std::string_view id, std::size_t face) {
+void GeometryText::open_surface(std::string_view name, std::string_view id, std::size_t face, const char* kind) {
   out_ += "<bldg:boundedBy><bldg:";
   out_ += name;
   out_ += " gml:id=\"";
-  append_id(out_, id, "_s", face);
+  append_id(out_, id, kind, face);
   out_ += "\">";
 }
 
@@ -176,7 +186,49 @@ void GeometryText::single_surface(std::string_view property, std::string_view id
   out_ += ">";
 }
 
+void GeometryText::surface_group(std::string_view property, std::string_view id, const std::vector<std::size_t>& faces,
+                                 Mark mark) {
+  out_ += "<bldg:";
+  out_ += property;
+  out_ += "><MultiSurface>\n";
+  for (const std::size_t f : faces) reference(id, f, mark);
+  out_ += "</MultiSurface></bldg:";
+  out_ += property;
+  out_ += ">";
+}
+
+void GeometryText::surfaces_of_rules(const model::Detail& detail, std::string_view id) {
+  std::size_t number = 0;
+  for (const model::RuleFaces& rule : detail.rules) {
+    std::array<std::vector<std::size_t>, model::kSurfaceKindCount> faces;
+    for (std::size_t f = rule.first; f < rule.first + rule.count; ++f)
+      faces[static_cast<std::size_t>(detail.solid.faces[f].kind)].push_back(f);
+    for (std::size_t kind = 0; kind < faces.size(); ++kind) {
+      if (faces[kind].empty()) continue;
+      open_surface(kSurfaceNames[kind], id, number++, "_r");
+      out_ += "<gml:name>";
+      append_xml(out_, rule.rule);
+      out_ += "</gml:name>";
+      surface_group("lod3MultiSurface", id, faces[kind], Mark::detail);
+      close_surface(kSurfaceNames[kind]);
+    }
+  }
+}
+
 void GeometryText::surfaces(const model::Solid& solid, std::string_view id) {
+  if (!solid.closed) {
+    std::array<std::vector<std::size_t>, model::kSurfaceKindCount> faces;
+    for (std::size_t f = 0; f < solid.faces.size(); ++f)
+      faces[static_cast<std::size_t>(solid.faces[f].kind)].push_back(f);
+    std::size_t number = 0;
+    for (std::size_t kind = 0; kind < faces.size(); ++kind) {
+      if (faces[kind].empty()) continue;
+      open_surface(kSurfaceNames[kind], id, number++);
+      surface_group("lod2MultiSurface", id, faces[kind], Mark::polygon);
+      close_surface(kSurfaceNames[kind]);
+    }
+    return;
+  }
   for (std::size_t f = 0; f < solid.faces.size(); ++f) {
     const std::string_view name = kSurfaceNames[static_cast<std::size_t>(solid.faces[f].kind)];
     open_surface(name, id, f);

@@ -43,7 +43,8 @@ class GeometryText {
   /// Polygon of a footprint at height z, facing up.
   void footprint(const model::Polygon& plan, double z);
 
-  /// Solid with its polygons inside; these are "<id>_p<face>", or have no id where `id` is empty.
+  /// Solid with its polygons inside, or a MultiSurface where it is not closed; these are "<id>_p<face>", or have no id where `id`
+  /// is empty.
   void solid(const model::Solid& solid, std::string_view solid_id, std::string_view id);
   /// Solid of LoD2 of a body that has LoD3: polygons that both have are references to those of detail_solid().
   void solid_beside_detail(const model::Solid& lod2, const model::Solid& lod3, std::string_view solid_id,
@@ -51,7 +52,13 @@ class GeometryText {
   /// Solid of LoD3: "<id>_p<face>" are the polygons that LoD2 has as well, "<id>_q<face>" the others.
   void detail_solid(const model::Solid& lod2, const model::Solid& lod3, std::string_view solid_id, std::string_view id);
 
-  /// One bldg:boundedBy per face of solid(): WallSurface "<id>_s<face>" with a reference to its polygon, and so on.
+  /// MultiSurface of what rules for footprints made: its polygons are "<id>_q<face>".
+  void rule_surfaces(const model::Solid& lod3, std::string_view surface_id, std::string_view id);
+  /// One bldg:boundedBy per rule and class of what they made: WallSurface "<id>_r<number>" with the rule's symbol as its name.
+  void surfaces_of_rules(const model::Detail& detail, std::string_view id);
+
+  /// One bldg:boundedBy per face of solid(): WallSurface "<id>_s<face>" with a reference to its polygon, and so on. Where it is
+  /// not closed one per class, "<id>_s<number>".
   void surfaces(const model::Solid& solid, std::string_view id);
   /// What others write into the surfaces of LoD3.
   struct SurfaceText {
@@ -68,11 +75,13 @@ class GeometryText {
  private:
   enum class Mark { none, polygon, detail };  ///< id of a polygon: none, "_p", "_q"
   void load_vertices(const model::Solid& solid);
-  void begin_solid(std::string_view solid_id);
-  void end_solid();
+  void begin_solid(std::string_view solid_id, bool closed = true);
+  void end_solid(bool closed = true);
   void polygon(const model::Solid& solid, std::size_t face, std::string_view id, Mark mark);
   void reference(std::string_view id, std::size_t face, Mark mark);
-  void open_surface(std::string_view name, std::string_view id, std::size_t face);
+  void open_surface(std::string_view name, std::string_view id, std::size_t face, const char* kind = "_s");
+  /// A property of several polygons.
+  void surface_group(std::string_view property, std::string_view id, const std::vector<std::size_t>& faces, Mark mark);
   void close_surface(std::string_view name);
   void single_surface(std::string_view property, std::string_view id, std::size_t face, Mark mark);
   /// LinearRing at a height, running as it is told, however the plan's ring runs.

@@ -57,7 +57,7 @@ void ObjectText::detail_solid(const model::Detail& detail) {
   std::string& out = *out_;
   if (!first_) out += ',';
   first_ = false;
-  out += "{\"type\":\"Solid\",\"lod\":\"3\"";
+  out += solid.closed ? "{\"type\":\"Solid\",\"lod\":\"3\"" : "{\"type\":\"MultiSurface\",\"lod\":\"3\"";
   boundaries(solid);
 
   // A wall with openings is a surface of its own, with its reveals; each opening is one below it. The others are one
@@ -66,6 +66,7 @@ void ObjectText::detail_solid(const model::Detail& detail) {
     model::SurfaceKind kind = model::SurfaceKind::wall;
     std::uint32_t parent = kUnknown;
     std::vector<std::uint32_t> children;
+    std::string_view rule = {};  ///< whose faces they are
   };
   std::vector<Semantic> semantics;
   std::vector<std::uint32_t> of_face(solid.faces.size(), kUnknown);
@@ -80,6 +81,18 @@ void ObjectText::detail_solid(const model::Detail& detail) {
     of_face[o.polygon] = own;
     semantics[wall].children.push_back(own);
     semantics.push_back({solid.faces[o.polygon].kind, wall, {}});
+  }
+  for (const model::RuleFaces& rule : detail.rules) {
+    std::uint32_t of_kind[model::kSurfaceKindCount];
+    std::fill(std::begin(of_kind), std::end(of_kind), kUnknown);
+    for (std::uint32_t f = rule.first; f < rule.first + rule.count; ++f) {
+      std::uint32_t& n = of_kind[static_cast<std::size_t>(solid.faces[f].kind)];
+      if (n == kUnknown) {
+        n = static_cast<std::uint32_t>(semantics.size());
+        semantics.push_back({solid.faces[f].kind, kUnknown, {}, rule.rule});
+      }
+      of_face[f] = n;
+    }
   }
   std::uint32_t of_kind[model::kSurfaceKindCount];
   std::fill(std::begin(of_kind), std::end(of_kind), kUnknown);
@@ -97,6 +110,10 @@ void ObjectText::detail_solid(const model::Detail& detail) {
     out += i ? ",{\"type\":\"" : "{\"type\":\"";
     out += semantic_name(semantics[i].kind);
     out += '"';
+    if (!semantics[i].rule.empty()) {
+      out += ",\"rule\":";
+      append_json(out, semantics[i].rule);
+    }
     if (semantics[i].parent != kUnknown) {
       out += ",\"parent\":";
       append_index(out, semantics[i].parent);
@@ -111,12 +128,12 @@ void ObjectText::detail_solid(const model::Detail& detail) {
     }
     out += '}';
   }
-  out += "],\"values\":[[";
+  out += solid.closed ? "],\"values\":[[" : "],\"values\":[";
   for (std::size_t f = 0; f < of_face.size(); ++f) {
     if (f) out += ',';
     append_index(out, of_face[f]);
   }
-  out += "]]}";
+  out += solid.closed ? "]]}" : "]}";
   solid_material(solid);
   out += '}';
 }

@@ -150,6 +150,10 @@ void ObjectText::object(const model::Building& building, const model::BuildingPa
   if (const std::string_view name = tags_.name(tags); !name.empty()) text("name", name);
   if (const std::string page = osm_page(osm); !page.empty()) text("externalReference", page);
   attributes(part ? part->attributes : building.attributes, tags, part);
+  if (building.replaced) {
+    text("origin", "replaced");
+    text("replaced_by", model::text(*building.replaced));
+  }
   if (whole) imagery(building.osm);
   *out_ += '}';
   address(tags);
@@ -310,7 +314,7 @@ void ObjectText::solid(const model::Solid& solid, int lod, bool materials) {
   std::string& out = *out_;
   if (!first_) out += ',';
   first_ = false;
-  out += "{\"type\":\"Solid\",\"lod\":\"";
+  out += solid.closed ? "{\"type\":\"Solid\",\"lod\":\"" : "{\"type\":\"MultiSurface\",\"lod\":\"";
   out += static_cast<char>('0' + lod);
   out += '"';
   boundaries(solid);
@@ -327,12 +331,12 @@ void ObjectText::solid(const model::Solid& solid, int lod, bool materials) {
       out += "\"}";
       n = count++;
     }
-    out += "],\"values\":[[";
+    out += solid.closed ? "],\"values\":[[" : "],\"values\":[";
     for (std::size_t f = 0; f < solid.faces.size(); ++f) {
       if (f) out += ',';
       append_index(out, number[static_cast<std::size_t>(solid.faces[f].kind)]);
     }
-    out += "]]}";
+    out += solid.closed ? "]]}" : "]}";
   }
   if (materials) solid_material(solid);
   out += '}';
@@ -341,7 +345,7 @@ void ObjectText::solid(const model::Solid& solid, int lod, bool materials) {
 void ObjectText::boundaries(const model::Solid& solid) {
   std::string& out = *out_;
   numbers_.assign(solid.vertices.size(), kUnknown);
-  out += ",\"boundaries\":[[";
+  out += solid.closed ? ",\"boundaries\":[[" : ",\"boundaries\":[";
   for (std::size_t f = 0; f < solid.faces.size(); ++f) {
     out += f ? ",[" : "[";
     bool first_loop = true;
@@ -359,20 +363,20 @@ void ObjectText::boundaries(const model::Solid& solid) {
     }
     out += ']';
   }
-  out += "]]";
+  out += solid.closed ? "]]" : "]";
 }
 
 void ObjectText::solid_material(const model::Solid& solid) {
   std::string& out = *out_;
   out += ",\"material\":{\"";
   out += kVisualTheme;
-  out += "\":{\"values\":[[";
+  out += solid.closed ? "\":{\"values\":[[" : "\":{\"values\":[";
   for (std::size_t f = 0; f < solid.faces.size(); ++f) {
     if (f) out += ',';
     const model::Face& face = solid.faces[f];
     append_index(out, materials_.number(MaterialNumbers::key(class_of_->at(face.material), face.colour)));
   }
-  out += "]]}}";
+  out += solid.closed ? "]]}}" : "]}}";
 }
 
 }  // namespace blockrand::outputs

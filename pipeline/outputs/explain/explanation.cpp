@@ -92,6 +92,10 @@ class Writer {
     if (const auto name = tags_.name(building.tags); !name.empty()) json_.string("name", name);
     if (const std::string address = tags_.address(building.tags).line(); !address.empty())
       json_.string("address", address);
+    if (building.replaced) {
+      json_.string("origin", "replaced");
+      json_.string("replaced_by", model::text(*building.replaced));
+    }
     json_.key("tags");
     if (tags_.extract())
       append_tags_json(*text_, *tags_.extract(), building.tags);
@@ -308,6 +312,7 @@ class Writer {
 
   std::string build_text(const Building& building, const FinalState& final_state) {
     if (building.parts.empty()) return fmt::format("nothing was built: {}", model::info(final_state.code).meaning);
+    if (building.replaced) return "the model " + model::text(*building.replaced);
     if (building.parts.size() == 1) return body_text(building.parts.front());
     // Bodies that became the same are named together, in the order of the first of them.
     std::vector<std::pair<std::string, std::vector<std::string>>> groups;
@@ -350,6 +355,7 @@ class Writer {
   /// Which rules made the fronts, what stands in and on them, and what was left out. Empty below LoD3.
   std::string facade_text(const Building& building) {
     if (options_.lod < 3 || building.parts.empty()) return {};
+    if (building.replaced) return "a model replaces the building: no rules run";
     const std::string& preset = building.attributes.preset.value;
     const std::string file = options_.rule_file ? options_.rule_file(preset) : std::string();
     if (file.empty())
@@ -374,15 +380,20 @@ class Writer {
   }
 
   std::string check_text(const Building& building) const {
-    std::size_t solids = 0, faces = 0;
+    std::size_t solids = 0, faces = 0, surfaces = 0;
     for (const BuildingPart& part : building.parts)
       for (const model::Solid* solid : {&part.lod1, &part.lod2, &part.lod3.solid}) {
+        if (!solid->closed) {
+          surfaces += solid->faces.size();
+          continue;
+        }
         solids += !solid->empty();
         faces += solid->faces.size();
       }
-    if (solids == 0) return "there is no solid to check";
-    return fmt::format("{} with {} faces: closed, outward, without self-intersections", counted(solids, "solid"),
-                       faces);
+    const std::string open = surfaces == 0 ? "" : fmt::format("{} surfaces that need not bound anything", surfaces);
+    if (solids == 0) return open.empty() ? "there is no solid to check" : open;
+    return fmt::format("{} with {} faces: closed, outward, without self-intersections{}{}", counted(solids, "solid"),
+                       faces, open.empty() ? "" : "; ", open);
   }
 
   // ---- values

@@ -47,10 +47,12 @@ class PlainText {
       out_.lines.push_back(what());
       out_.lines.push_back(storeys());
       out_.lines.push_back(height());
-      out_.lines.push_back(roof());
+      const std::string model = j_.value("replaced_by", "");
+      if (model.empty()) out_.lines.push_back(roof());
       add(style());
       add(stands());
-      out_.lines.push_back(facade());
+      out_.lines.push_back(model.empty() ? facade()
+                                         : "Model: somebody's own model stands for this building: " + model + ".");
       add(simplified());
       add(outline());
       to_change();

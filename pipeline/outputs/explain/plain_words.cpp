@@ -194,6 +194,8 @@ std::string_view consequence_words(std::string_view code) {
       {"OPENING_LEFT_OUT", "some windows or doors did not fit and are missing"},
       {"ROOF_ELEMENT_LEFT_OUT", "some chimneys, gables, dormers or roof windows did not fit and are missing"},
       {"GRAMMAR_ERROR", "a rule for its front failed, so something of the front is missing"},
+      {"MODEL_NOT_CLOSED", "the model that replaces the building bounds no volume; its surfaces stand as they are"},
+      {"BUILDING_REPLACED", "a model named by the overrides stands for the building"},
       {"LEAF_DROPPED", "something that the rules of its front made has no place in the model and is missing"},
       {"PLAN_SIMPLIFIED", "its outline was simplified, or no sound body could have been built"},
       {"REST_FAILED", "what its mapped parts leave free could not be built, so a piece may be missing"},

@@ -90,6 +90,8 @@ std::vector<Column> building_columns() {
       {"footprint_area", ColumnKind::real, "m²", "Area of the footprint on the map"},
       {"volume", ColumnKind::real, "m³", "Volume of the best solids of its bodies"},
       {"fallbacks", ColumnKind::text, "", "Codes of what was built otherwise than asked, separated by blanks"},
+      {"origin", ColumnKind::text, "", "mapped; replaced: a model that the overrides name stands for it"},
+      {"replaced_by", ColumnKind::text, "", "That model: file, author, licence, source"},
   };
   add_address(c);
   for (const char* name : {"country", "city", "suburb", "postcode", "street", "house_number"})

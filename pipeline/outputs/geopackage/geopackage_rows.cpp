@@ -62,7 +62,7 @@ void write_codes(RowWriter& row, const std::vector<model::IssueCode>& codes) {
 }
 
 double volume_of(const model::BuildingPart& part) {
-  if (part.lod >= 2 && !part.lod2.empty()) return geometry::volume(part.lod2, part.lod2_triangles);
+  if (part.lod >= 2 && !part.lod2.empty() && part.lod2.closed) return geometry::volume(part.lod2, part.lod2_triangles);
   if (part.lod >= 1 && !part.lod1.empty()) return geometry::volume(part.lod1, part.lod1_triangles);
   return 0;
 }
@@ -149,6 +149,8 @@ class Builder {
     row.real(rounded(whole.area));
     row.real(rounded(whole.volume));
     write_codes(row, whole.fallbacks);
+    row.text(b.replaced ? "replaced" : "mapped");
+    row.text(b.replaced ? model::text(*b.replaced) : std::string());
     row.text(tags_.name(b.tags));
     const Address address = tags_.address(b.tags);
     row.text(address.empty() ? std::string() : address.line());

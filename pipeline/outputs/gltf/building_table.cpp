@@ -1,5 +1,6 @@
 #include "pipeline/outputs/gltf/building_table.h"
 
+#include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
@@ -85,6 +86,8 @@ class Builder {
                 .description = "Highest level of detail built; -1: none",
                 .required = true});
     fallbacks_ = text("fallbacks", "Codes of what was built simpler than asked");
+    if (std::ranges::any_of(region.buildings, [](const model::Building& b) { return b.owned && b.replaced; }))
+      replaced_by_ = text("replaced_by", "The model that stands for the building: file, author, licence, source");
     tags_column_ = text("tags", "JSON object of the OSM tags");
     building_tags_ = text("building_tags", "The building's own tags, on its first part, where parts are mapped apart");
     if (evidence_) evidence_column_ = text("evidence", "JSON object: why each attribute has its value");
@@ -157,6 +160,7 @@ class Builder {
       scratch_ += model::info(code).text;
     }
     table_.set_raw_text(fallbacks_, scratch_);
+    if (building.replaced) table_.set_raw_text(replaced_by_, model::text(*building.replaced));
     set_tags(tags_column_, part.tags);
     if (first && part.osm != building.osm) set_tags(building_tags_, building.tags);
     table_.end_row();
@@ -176,7 +180,7 @@ class Builder {
   std::vector<AttributeColumns> attributes_;
   std::string scratch_;
   int id_ = 0, building_ = 0, osm_type_ = 0, osm_id_ = 0, name_ = 0, address_ = 0, built_roof_ = 0, lod_ = 0,
-      fallbacks_ = 0, tags_column_ = 0, building_tags_ = 0, evidence_column_ = 0;
+      fallbacks_ = 0, replaced_by_ = 0, tags_column_ = 0, building_tags_ = 0, evidence_column_ = 0;
 };
 
 nlohmann::json enumeration(std::vector<std::string_view> names, bool with_none) {

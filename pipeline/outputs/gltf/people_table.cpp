@@ -1,5 +1,6 @@
 #include "pipeline/outputs/gltf/people_table.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -94,6 +95,8 @@ class Builder {
     add_all(kRoof);
     sources_ = text("sources", "Where the values come from: source: columns; tag is mapped, default is a guess");
     fallbacks_ = text("fallbacks", "Codes of what was built simpler than asked");
+    if (std::ranges::any_of(region.buildings, [](const model::Building& b) { return b.owned && b.replaced; }))
+      replaced_by_ = text("replaced_by", "The model that stands for the building: file, author, licence, source");
     if (evidence_) evidence_column_ = text("evidence", "JSON object: why each attribute has its value");
     lod_ = table_.add({.name = "lod",
                        .kind = Kind::int8,
@@ -193,6 +196,7 @@ class Builder {
       codes += model::info(code).text;
     }
     table_.set_raw_text(fallbacks_, codes);
+    if (building.replaced) table_.set_raw_text(replaced_by_, model::text(*building.replaced));
     table_.set_raw_text(id_, part.id);
     table_.set_raw_text(building_, building_id);
     table_.end_row();
@@ -214,7 +218,7 @@ class Builder {
   PropertyTable table_{PropertyTable::Order::as_added};
   std::vector<Attribute> attributes_;                               ///< as model::for_each_attribute visits them
   std::array<std::string, model::kSourceCount> columns_of_source_;  ///< of the row at hand
-  int address_ = 0, name_ = 0, style_confidence_ = 0, built_roof_ = 0, sources_ = 0, fallbacks_ = 0,
+  int address_ = 0, name_ = 0, style_confidence_ = 0, built_roof_ = 0, sources_ = 0, fallbacks_ = 0, replaced_by_ = 0,
       evidence_column_ = 0, lod_ = 0, id_ = 0, building_ = 0;
 };
 
