@@ -374,8 +374,9 @@ class Rules {
     };
     const std::int64_t srs_id = s_.srs_id();
     each(
-        "SELECT s.id, s.body, s.building, s.tile, s.lod, s.class, s.colour, s.faces, s.geom, p.building, p.tile, p.lod "
-        "FROM surfaces s LEFT JOIN parts p ON p.id = s.body ORDER BY s.fid",
+        "SELECT s.id, s.body, s.building, s.tile, s.lod, s.class, s.colour, s.faces, s.geom, p.building, p.tile, "
+        "p.lod, "
+        "p.fallbacks FROM surfaces s LEFT JOIN parts p ON p.id = s.body ORDER BY s.fid",
         [&](const SqliteRow& row) {
           const std::string name = row.string(0);
           if (row.string(1) != id) {
@@ -398,11 +399,14 @@ class Rules {
           if (static_cast<std::int64_t>(g.polygons.size()) != row.integer(7))
             rule(name, fmt::format("layer surfaces: says {} faces, has {}", row.text(7), g.polygons.size()));
           bool on_grid = true;
+          const bool bounds =
+              row.string(12).find(model::info(model::IssueCode::model_not_closed).text) == std::string::npos;
           for (const ReadPolygon& polygon : g.polygons)
             for (const auto& ring : polygon.rings)
               for (std::size_t i = 0; i < ring.size(); ++i) {
                 const model::Point3 &a = ring[i], &b = ring[(i + 1) % ring.size()];
                 on_grid = on_grid && a == model::snap(a);
+                if (!bounds) continue;
                 const std::array<double, 3> p{a.x, a.y, a.z}, q{b.x, b.y, b.z};
                 if (p < q)
                   ++body.edges[{p, q}];

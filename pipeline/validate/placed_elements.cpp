@@ -189,7 +189,7 @@ void check_openings(const Glb& glb, const std::string& file, std::vector<Finding
   const auto places = places_by_row(glb);
   for (std::size_t row = 0; row < glb.contents.bodies.size(); ++row) {
     const ReadBody& body = glb.contents.bodies[row];
-    if (!is_detailed(body)) continue;
+    if (!is_detailed(body) || body.attributes.contains("open_surfaces")) continue;
     std::vector<Box> boxes;
     std::vector<geometry::PlanBox> in_plan;
     for (const GlbPlace* place : places[row])

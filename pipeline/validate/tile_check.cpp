@@ -155,9 +155,8 @@ class Checker {
       if (glb.triangles[i].empty() || level == 0 || detailed || (lod != body.attributes.end() && lod->second == "0"))
         continue;
       // The model of a landmark is told to bound nothing.
-      const auto told = body.attributes.find("fallbacks");
-      if (level >= 2 && told != body.attributes.end() &&
-          told->second.find(model::info(model::IssueCode::model_not_closed).text) != std::string::npos) {
+      if (level >= 2 && lod != body.attributes.end() && lod->second == "2" &&
+          body.attributes.contains("open_surfaces")) {
         unsound_.insert(body.id);
         continue;
       }

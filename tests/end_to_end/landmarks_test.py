@@ -126,7 +126,7 @@ class Landmarks(BuildTest):
 
     def test_a_model_that_lies_where_it_says(self):
         '''CityGML of a build of ours, put in the place of the same house: it comes out where it was.'''
-        first = self.some(SAMPLE)[0]
+        first = self.some(SAMPLE)[2]  # a house of one body
         own = self.build(SAMPLE, 'own', '--lod', '2', '--formats', 'citygml')
         text = self.text(own, 'citygml')
         begin = text.index(f'<core:cityObjectMember><bldg:Building gml:id="{first}">')
@@ -159,7 +159,6 @@ class Landmarks(BuildTest):
             whole = f.read()
         with open(self.path('cut.glb'), 'wb') as f:
             f.write(whole[:len(whole) // 2])
-        glb(self.path('empty.glb'), sides=())
         for file, more, said in (('missing.glb', '', 'missing.glb'), ('cut.glb', '', 'cut.glb'), ('tower.glb', 'scale = 0', 'scale'),
                                  ('tower.glb', 'at = [200, 0]', 'no place'), ('tower.glb', 'size = 3', 'size')):
             orders = self.place('bad.toml', ORDER.format(id=first, file=file, more=more))

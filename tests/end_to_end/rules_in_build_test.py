@@ -79,7 +79,8 @@ class RulesInBuild(BuildTest):
             self.assertEqual(codes(out, 'LEAF_DROPPED'), [])
             self.assertEqual(codes(out, 'PARAMETER_UNREAD'), [])
             for row in codes(out, 'GRAMMAR_ERROR'):
-                self.assertIn('the image ', row['detail'])  # colours alone are shown
+                # Images are not shown; the yard front of ornate_facade.cga projects without a projection.
+                self.assertRegex(row['detail'], 'the image .* is not shown|no projection is set up')
             self.valid(out)
             db = sqlite3.connect(os.path.join(out, 'buildings.gpkg'))
             worn = dict(db.execute('select preset, count(*) from parts where lod = 3 group by preset'))

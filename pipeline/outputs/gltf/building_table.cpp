@@ -86,6 +86,10 @@ class Builder {
                 .description = "Highest level of detail built; -1: none",
                 .required = true});
     fallbacks_ = text("fallbacks", "Codes of what was built simpler than asked");
+    const auto is_open = [](const model::BuildingPart& p) { return !p.lod2.closed || !p.lod3.solid.closed; };
+    if (std::ranges::any_of(region.buildings,
+                            [&](const model::Building& b) { return b.owned && std::ranges::any_of(b.parts, is_open); }))
+      open_surfaces_ = text("open_surfaces", "yes: its surfaces need not bound a volume; made by rules, or a model");
     if (std::ranges::any_of(region.buildings, [](const model::Building& b) { return b.owned && b.replaced; }))
       replaced_by_ = text("replaced_by", "The model that stands for the building: file, author, licence, source");
     tags_column_ = text("tags", "JSON object of the OSM tags");
@@ -160,6 +164,7 @@ class Builder {
       scratch_ += model::info(code).text;
     }
     table_.set_raw_text(fallbacks_, scratch_);
+    if (!part.lod2.closed || !part.lod3.solid.closed) table_.set_raw_text(open_surfaces_, "yes");
     if (building.replaced) table_.set_raw_text(replaced_by_, model::text(*building.replaced));
     set_tags(tags_column_, part.tags);
     if (first && part.osm != building.osm) set_tags(building_tags_, building.tags);
@@ -180,7 +185,7 @@ class Builder {
   std::vector<AttributeColumns> attributes_;
   std::string scratch_;
   int id_ = 0, building_ = 0, osm_type_ = 0, osm_id_ = 0, name_ = 0, address_ = 0, built_roof_ = 0, lod_ = 0,
-      fallbacks_ = 0, replaced_by_ = 0, tags_column_ = 0, building_tags_ = 0, evidence_column_ = 0;
+      fallbacks_ = 0, replaced_by_ = 0, open_surfaces_ = 0, tags_column_ = 0, building_tags_ = 0, evidence_column_ = 0;
 };
 
 nlohmann::json enumeration(std::vector<std::string_view> names, bool with_none) {

@@ -95,6 +95,10 @@ class Builder {
     add_all(kRoof);
     sources_ = text("sources", "Where the values come from: source: columns; tag is mapped, default is a guess");
     fallbacks_ = text("fallbacks", "Codes of what was built simpler than asked");
+    const auto is_open = [](const model::BuildingPart& p) { return !p.lod2.closed || !p.lod3.solid.closed; };
+    if (std::ranges::any_of(region.buildings,
+                            [&](const model::Building& b) { return b.owned && std::ranges::any_of(b.parts, is_open); }))
+      open_surfaces_ = text("open_surfaces", "yes: its surfaces need not bound a volume; made by rules, or a model");
     if (std::ranges::any_of(region.buildings, [](const model::Building& b) { return b.owned && b.replaced; }))
       replaced_by_ = text("replaced_by", "The model that stands for the building: file, author, licence, source");
     if (evidence_) evidence_column_ = text("evidence", "JSON object: why each attribute has its value");
@@ -196,6 +200,7 @@ class Builder {
       codes += model::info(code).text;
     }
     table_.set_raw_text(fallbacks_, codes);
+    if (!part.lod2.closed || !part.lod3.solid.closed) table_.set_raw_text(open_surfaces_, "yes");
     if (building.replaced) table_.set_raw_text(replaced_by_, model::text(*building.replaced));
     table_.set_raw_text(id_, part.id);
     table_.set_raw_text(building_, building_id);
@@ -219,7 +224,7 @@ class Builder {
   std::vector<Attribute> attributes_;                               ///< as model::for_each_attribute visits them
   std::array<std::string, model::kSourceCount> columns_of_source_;  ///< of the row at hand
   int address_ = 0, name_ = 0, style_confidence_ = 0, built_roof_ = 0, sources_ = 0, fallbacks_ = 0, replaced_by_ = 0,
-      evidence_column_ = 0, lod_ = 0, id_ = 0, building_ = 0;
+      open_surfaces_ = 0, evidence_column_ = 0, lod_ = 0, id_ = 0, building_ = 0;
 };
 
 }  // namespace
