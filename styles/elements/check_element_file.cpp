@@ -20,6 +20,8 @@ using model::Point3;
 constexpr double kRounding = 1e-6;
 /// m², of an opening, that may stay open, and pieces of it that do not count: what rounding leaves between faces.
 constexpr double kMostOpen = 1e-4, kLeastOpen = 1e-6;
+/// Pieces of an opening that faces leave: more are no window.
+constexpr std::size_t kMostOpenPieces = 10'000;
 
 std::vector<Point3> corners_of(const ElementMesh& mesh, const ElementFace& face) {
   std::vector<Point3> out;
@@ -117,6 +119,7 @@ std::string open_place(const Element& element) {
         cut_away(piece, flat, left);
     }
     open = std::move(left);
+    if (open.size() > kMostOpenPieces) return "what closes it leaves more holes than can be counted";
   }
   double area = 0;
   const Outline* largest = nullptr;
@@ -152,15 +155,18 @@ void check_element_file(const ElementFile& file, const ProfileLibrary& profiles)
     const char* name;
     double width, height;
   };
-  for (const Size s : {Size{"least", w.least, h.least}, {"usual", w.usual, h.usual}, {"most", w.most, h.most}}) {
-    const std::string at =
-        fmt::format("at its {} size, {} x {} m, ", s.name, base::shortest(s.width), base::shortest(s.height));
-    const auto made = make_kind(file.kind, maker, s.width, s.height, {}, profiles);
-    if (!made) fail(at + "it cannot be made: " + made.error(), "Mend that, or narrow width and height");
-    // Built-in kinds keep their own promises: gateways may stand open, shaped windows are not convex.
-    const std::string defect = element_defect(*made, model::snap(s.width), model::snap(s.height), !file.base);
-    if (!defect.empty()) fail(at + defect, kSeePage);
-  }
+  for (const Size s : {Size{"least", w.least, h.least}, {"usual", w.usual, h.usual}, {"most", w.most, h.most}})
+    for (const double detail : {1.0, 0.0, 2.0}) {
+      const std::vector<Parameter> asked{{"detail", detail}};
+      const std::string at =
+          fmt::format("at its {} size, {} x {} m{}, ", s.name, base::shortest(s.width), base::shortest(s.height),
+                      detail == 1 ? "" : fmt::format(" and detail {}", detail));
+      const auto made = make_kind(file.kind, maker, s.width, s.height, asked, profiles);
+      if (!made) fail(at + "it cannot be made: " + made.error(), "Mend that, or narrow width and height");
+      // Built-in kinds keep their own promises: gateways may stand open, shaped windows are not convex.
+      const std::string defect = element_defect(*made, model::snap(s.width), model::snap(s.height), !file.base);
+      if (!defect.empty()) fail(at + defect, kSeePage);
+    }
 }
 
 }  // namespace blockrand::elements

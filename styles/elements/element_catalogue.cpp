@@ -22,13 +22,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files of a folder that end in .toml, by name; none where there is no such folder.
+/// Files of a folder that end in .toml, by name, without hidden ones, which editors leave; none where there is no such
+/// folder.
 std::vector<std::string> toml_files(const fs::path& folder) {
   std::vector<std::string> out;
   std::error_code error;
   if (!fs::exists(folder, error) && !error) return out;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-    if (at->path().extension() == ".toml") out.push_back(at->path().string());
+    if (at->path().extension() == ".toml" && at->path().filename().string()[0] != '.')
+      out.push_back(at->path().string());
   if (error) throw base::InputError(folder.string(), "", error.message(), "Check the folder and its permissions");
   std::sort(out.begin(), out.end());
   return out;

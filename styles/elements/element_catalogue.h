@@ -74,7 +74,8 @@ class ElementCatalogue {
 
 /// Reads profiles and element files: of each folder `profiles/*.toml`, then `elements/*.toml`, by name. Either may be
 /// absent. A profile or kind of a later folder replaces one of the same name of an earlier one, but no built-in kind.
-/// docs/element_files.md says what stands in the files. Each kind is made at its least, usual and most size.
+/// docs/element_files.md says what stands in the files. Each kind is made at its least, usual and most
+/// size.
 ///
 /// \param reader  for files that name a model; without one these are errors
 /// \throws base::InputError  with file, place and remedy: what cannot be read, unknown keys and names, kinds that

@@ -37,7 +37,7 @@ ElementFile parse_element_file(std::string_view text, const std::string& file, c
 /// Fills opening and mesh. Error: the piece and what is wrong with it.
 Made make_from_file(const ElementFile& file, const Request& request, Element& element);
 
-/// Makes the kind at its least, usual and most size.
+/// Makes the kind at its least, usual and most size, at each level of detail.
 /// \throws base::InputError  it cannot be made, or is no sound element
 void check_element_file(const ElementFile& file, const ProfileLibrary& profiles);
 

@@ -18,9 +18,9 @@ std::string title(const ElementKind& kind, double width, double height, const Va
   for (char& c : out)
     if (c == '_') c = ' ';
   out += fmt::format(" {:.2f} x {:.2f}", width, height);
-  if (values.has("head") && !values.is("head", "straight")) out += ", " + values.word("head") + " head";
+  if (values.has_word("head") && !values.is("head", "straight")) out += ", " + values.word("head") + " head";
   for (const char* trim : {"surround", "pediment"})
-    if (values.has(trim) && kind.name != trim && !values.is(trim, "none")) {
+    if (values.has_word(trim) && kind.name != trim && !values.is(trim, "none")) {
       std::string text = values.word(trim);
       for (char& c : text)
         if (c == '_') c = ' ';

@@ -168,6 +168,10 @@ bool Values::has(std::string_view name) const {
   return false;
 }
 
+bool Values::has_word(std::string_view name) const {
+  return has(name) && kind_->parameters[index(name)].type == ParameterInfo::Type::word;
+}
+
 const std::string& Values::word(std::string_view name) const {
   const std::size_t i = index(name);
   return kind_->parameters[i].words[static_cast<std::size_t>(numbers_[i])];

@@ -36,6 +36,8 @@ class Values {
   /// A program, traced the same way.
   Profile traced(const ProfileProgram& program) const;
   bool has(std::string_view name) const;
+  /// The same, and it is a word: element files may have numbers of any name.
+  bool has_word(std::string_view name) const;
   int detail() const { return count("detail"); }
 
  private:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "pipeline/base/random.h"
 #include "styles/elements/mesh_builder.h"
 #include "tests/unit/elements/element_checks.h"
 #include "tests/unit/elements/element_folder.h"
@@ -202,6 +203,55 @@ TEST(ElementFile, ExamplesOfTheManualAreGood) {
         << example;
   }
   EXPECT_EQ(examples, 3);
+}
+
+TEST(ElementFile, ParametersMayBearNamesOfTrim) {
+  std::string file = kWall;
+  for (const char* name : {"head", "surround", "pediment", "leaves", "sign"})
+    file +=
+        "[[parameter]]\nname = \"" + std::string(name) + "\"\ndefault = 0.25\nrange = [0.25, 0.5]\nmeaning = \"a\"\n";
+  const Element e = made(file + "[[piece]]\npart = \"metal\"\nx = [0, \"head + sign\"]\ny = [0, 1]\nz = [0, 1]\n");
+  EXPECT_EQ(e.name, "thing 1.00 x 1.00");
+  EXPECT_EQ(bounds_of(e.mesh).most.x, 0.5);
+}
+
+TEST(ElementFile, IsTriedAtEachDetail) {
+  const ElementFolder folder;
+  EXPECT_THAT(folder.error_of(kWall + kBox +
+                              "[[piece]]\npart = \"metal\"\nwhen = \"detail - 1\"\nx = [0, 0]\ny = [0, 1]\nz = "
+                              "[0, 1]\n"),
+              HasSubstr("at its least size, 0.5 x 0.5 m and detail 2, it cannot be made"));
+}
+
+/// Bytes changed, left out and doubled: what is read can be made, the rest is an error that names the file.
+TEST(ElementFile, DamagedFilesAreErrorsOrGood) {
+  const ElementFolder folder;
+  int read = 0, refused = 0;
+  for (const char* name : {"awning", "louvre", "window_grille", "tilt_window_pvc"}) {
+    std::ifstream file(std::string(BLOCKRAND_SOURCE_DIR "/configs/elements/") + name + ".toml");
+    const std::string whole(std::istreambuf_iterator<char>(file), {});
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+      std::string text = whole;
+      const auto drawn = [&](std::uint64_t n, std::size_t below) {
+        return static_cast<std::size_t>(base::random_unit(seed, n, name) * static_cast<double>(below));
+      };
+      for (std::uint64_t k = 0; k < 1 + seed % 3; ++k) {
+        const std::size_t at = drawn(10 * k, text.size());
+        constexpr std::string_view kBytes = "0159.-+*/()[]\"'=\n#whin,";
+        if (const std::size_t what = drawn(10 * k + 1, 3); what == 0)
+          text[at] = kBytes[drawn(10 * k + 2, kBytes.size())];
+        else if (what == 1)
+          text.erase(at, 1 + drawn(10 * k + 3, 20));
+        else
+          text.insert(at, text.substr(drawn(10 * k + 4, text.size()), 30));
+      }
+      const std::string error = folder.error_of(text);
+      ++(error.empty() ? read : refused);
+      EXPECT_TRUE(error.empty() || error.find("thing.toml") != std::string::npos) << error << text;
+    }
+  }
+  EXPECT_GT(read, 20);
+  EXPECT_GT(refused, 100);
 }
 
 TEST(ElementFile, EndsBadInput) {
