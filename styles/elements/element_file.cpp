@@ -165,7 +165,9 @@ void read_opening(base::TomlTable& table, ElementFile& out) {
   if (reveal_is_parameter) {
     if (table.has("reveal")) table.fail("reveal", "is a parameter already", "Leave one of them out");
   } else {
-    out.reveal = read_expression(table, "reveal", out.names);
+    // A model may bring its own depth.
+    const bool flush = table.has("model") && !table.has("reveal");
+    out.reveal = flush ? Expression(0.0) : read_expression(table, "reveal", out.names);
     out.names.push_back("reveal");
   }
   if (table.has("outline")) {

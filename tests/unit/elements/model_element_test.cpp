@@ -93,15 +93,21 @@ TEST(ModelElement, WindowsStandAtTheRevealsEnd) {
   file.cube(1);
   file.node({{"mesh", 0}});
   folder.write("elements/thing.glb", file.glb());
-  folder.write("elements/thing.toml",
-               "meaning = \"a\"\nclass = \"window\"\nwidth = [0.5, 1, 2]\nheight = [0.5, 1, 2]\nreveal = 0.25\n"
-               "model = \"thing.glb\"\nlicence = \"CC0\"\nsource = \"here\"\nanchor = \"back_bottom_centre\"\nfit = "
-               "\"stretch\"\n");
+  const std::string window =
+      "meaning = \"a\"\nclass = \"window\"\nwidth = [0.5, 1, 2]\nheight = [0.5, 1, 2]\n"
+      "model = \"thing.glb\"\nlicence = \"CC0\"\nsource = \"here\"\nanchor = \"back_bottom_centre\"\nfit = "
+      "\"stretch\"\n";
+  folder.write("elements/thing.toml", window + "reveal = 0.25\n");
   const auto e = folder.read(read_triangle_model).make("thing", 1.5, 2);
   ASSERT_TRUE(e) << e.error();
   EXPECT_EQ(bounds_of(e->mesh).least, (Point3{-0.75, 0, -0.25}));
   EXPECT_EQ(e->opening.reveal, 0.25);
   EXPECT_EQ(checks::open_place(*e), "");
+  folder.write("elements/thing.toml", window);
+  const auto flush = folder.read(read_triangle_model).make("thing", 1.5, 2);
+  ASSERT_TRUE(flush) << flush.error();
+  EXPECT_EQ(flush->opening.reveal, 0);
+  EXPECT_EQ(bounds_of(flush->mesh).least, (Point3{-0.75, 0, 0}));
 }
 
 TEST(ModelElement, TellsWhatIsWrong) {
