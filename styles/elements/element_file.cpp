@@ -143,6 +143,10 @@ void read_own(base::TomlTable& table, ElementFile& out) {
     table.fail("class", semantic ? fmt::format("cannot be \"{}\"", *semantic) : "is missing",
                "Write class = \"window\", \"door\" or \"installation\"");
   out.kind.width.measures = out.kind.height.measures = is_opening(out.kind) ? "opening" : "whole";
+  if (table.boolean("run").value_or(false)) {
+    if (is_opening(out.kind)) table.fail("run", "cannot be true of an opening", "Leave it out");
+    out.kind.width.measures = "run";
+  }
   read_size(table, "width", true, out.kind.width);
   read_size(table, "height", true, out.kind.height);
   for (base::TomlTable& parameter : table.tables("parameter")) {

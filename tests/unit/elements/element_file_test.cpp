@@ -149,6 +149,14 @@ TEST(ElementFile, RevealsMayBeParametersOrCalculated) {
   EXPECT_EQ(e.semantic, ElementClass::door);
 }
 
+TEST(ElementFile, FriezesAreRuns) {
+  const ElementFolder folder;
+  folder.write("elements/thing.toml", kWall + "run = true\n" + kBox);
+  EXPECT_EQ(folder.read().find("thing")->width.measures, "run");
+  EXPECT_EQ(shipped().find("awning")->width.measures, "whole");
+  EXPECT_THAT(folder.error_of(kWindow + "run = true\n" + kPane), HasSubstr("run cannot be true of an opening"));
+}
+
 TEST(ElementFile, VariantsHaveOtherDefaults) {
   const std::string file =
       "meaning = \"a thing\"\nbase = \"double_casement\"\nwidth = [0.8, 1, 2]\nheight = [1.2, 2, 3]\n"
