@@ -20,7 +20,7 @@ blockrand_compile_together(importers_elevation  # importers/elevation
 blockrand_compile_together(importers_reference  # importers/reference
   affine_transform.cpp axes.cpp citygml_starts.cpp cityjson.cpp cityjson_geometry.cpp coordinate_text.cpp file_bytes.cpp
   footprints.cpp gltf.cpp gltf_file.cpp gltf_scene.cpp gltf_table.cpp height_words.cpp links.cpp polygons.cpp
-  reference_model.cpp)
+  reference_model.cpp triangle_model.cpp)
 blockrand_compile_together(importers_reference  # importers/reference
   citygml.cpp cityjson_objects.cpp read_model.cpp reference_crs.cpp)
 blockrand_compile_together(importers_reference  # importers/reference
@@ -36,10 +36,14 @@ blockrand_compile_together(roofs  # styles/roofs
 blockrand_compile_together(roofs  # styles/roofs
   caps.cpp element_layout.cpp)
 blockrand_compile_together(elements  # styles/elements
-  balconies.cpp corner_stones.cpp courses.cpp flat_shapes.cpp kinds.cpp make_element.cpp opening_edges.cpp
+  balconies.cpp corner_stones.cpp courses.cpp flat_shapes.cpp kinds.cpp make_kind.cpp opening_edges.cpp
   opening_shape.cpp parameters.cpp profile_library.cpp windows.cpp)
 blockrand_compile_together(elements  # styles/elements
   bays.cpp doors.cpp joinery.cpp mesh_builder.cpp profile.cpp sweep.cpp trim.cpp)
+blockrand_compile_together(elements  # styles/elements
+  check_element_file.cpp element_catalogue.cpp element_file.cpp expression.cpp read_piece.cpp)
+blockrand_compile_together(elements  # styles/elements
+  add_piece.cpp placed_model.cpp)
 blockrand_compile_together(classify  # styles/classify
   catalogue.cpp classify.cpp evidence_model.cpp ground_floor.cpp votes.cpp)
 blockrand_compile_together(classify  # styles/classify

@@ -25,6 +25,9 @@ class GltfScene {
   /// \throws base::InputError  when instances multiply without end
   void add(GltfFile& file, const std::string& path, const Matrix4& place);
 
+  /// From a node to its parent. Nothing where its matrix is none.
+  static std::optional<Matrix4> transform_of(const Json& node);
+
  private:
   /// Who owns a triangle: a row of a table, a feature or batch without one, or a node.
   struct Feature {
@@ -58,8 +61,6 @@ class GltfScene {
   /// The feature of each vertex; empty where the file says none.
   std::vector<Feature> features_of(const Json& primitive, std::size_t vertices);
   std::vector<std::size_t> triangles_of(const Json& primitive, std::size_t vertices);
-  /// Nothing where its matrix is none.
-  static std::optional<Matrix4> transform_of(const Json& node);
 
   ReferenceModel& model_;
   NoteLog& notes_;

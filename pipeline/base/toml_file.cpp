@@ -273,6 +273,66 @@ std::optional<std::vector<std::pair<double, double>>> TomlTable::pairs(std::stri
   return values;
 }
 
+namespace {
+
+/// Nothing for other types, and numbers that are none.
+std::optional<NumberOrText> either(const toml::node& node) {
+  if (node.is_string()) return node.ref<std::string>();
+  if (!node.is_number() || !std::isfinite(as_double(node))) return std::nullopt;
+  return as_double(node);
+}
+
+}  // namespace
+
+std::optional<NumberOrText> TomlTable::number_or_text(std::string_view key) {
+  const toml::node* node = data_->ask(key);
+  if (!node) return std::nullopt;
+  const auto value = either(*node);
+  if (!value) data_->fail(*node, key, "must be a number or a text, not " + kind_name(*node), "");
+  return value;
+}
+
+std::optional<std::vector<NumberOrText>> TomlTable::numbers_or_texts(std::string_view key) {
+  const toml::node* node = data_->ask(key);
+  if (!node) return std::nullopt;
+  const std::string remedy = "Write it like [1, \"w / 2\"].";
+  if (!node->is_array()) data_->fail(*node, key, "must be an array, not " + kind_name(*node), remedy);
+  std::vector<NumberOrText> values;
+  for (const toml::node& entry : *node->as_array()) {
+    const auto value = either(entry);
+    if (!value) data_->fail(entry, key, "must hold numbers and texts only, not " + kind_name(entry), remedy);
+    values.push_back(*value);
+  }
+  return values;
+}
+
+std::optional<std::vector<std::pair<NumberOrText, NumberOrText>>> TomlTable::pairs_of_numbers_or_texts(
+    std::string_view key) {
+  const toml::node* node = data_->ask(key);
+  if (!node) return std::nullopt;
+  const std::string remedy = "Write it like [[1, 2], [3, \"w / 2\"]].";
+  if (!node->is_array()) data_->fail(*node, key, "must be an array of pairs, not " + kind_name(*node), remedy);
+  std::vector<std::pair<NumberOrText, NumberOrText>> values;
+  for (const toml::node& entry : *node->as_array()) {
+    const toml::array* pair = entry.as_array();
+    const bool two = pair && pair->size() == 2;
+    const auto a = two ? either((*pair)[0]) : std::nullopt, b = two ? either((*pair)[1]) : std::nullopt;
+    if (!a || !b) data_->fail(entry, key, "must hold pairs of numbers and texts only", remedy);
+    values.emplace_back(*a, *b);
+  }
+  return values;
+}
+
+bool TomlTable::holds_number(std::string_view key) const {
+  const toml::node* node = data_->table->get(key);
+  return node && node->is_number();
+}
+
+bool TomlTable::holds_boolean(std::string_view key) const {
+  const toml::node* node = data_->table->get(key);
+  return node && node->is_boolean();
+}
+
 bool TomlTable::holds_table(std::string_view key) const {
   const toml::node* node = data_->table->get(key);
   return node && node->is_table();

@@ -8,9 +8,13 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace blockrand::base {
+
+/// What may be a number or a calculation.
+using NumberOrText = std::variant<double, std::string>;
 
 /// A table of a TOML file. Errors are InputErrors that name file, line, column, the key, and the nearest known key.
 /// The readers return nothing where the key is absent.
@@ -39,7 +43,13 @@ class TomlTable {
   std::vector<TomlTable> tables(std::string_view key);
   /// An array of pairs of numbers, [[1, 2], [3, 4]].
   std::optional<std::vector<std::pair<double, double>>> pairs(std::string_view key);
+  std::optional<NumberOrText> number_or_text(std::string_view key);
+  std::optional<std::vector<NumberOrText>> numbers_or_texts(std::string_view key);
+  /// An array of pairs of both, [[1, "w / 2"], [3, 4]].
+  std::optional<std::vector<std::pair<NumberOrText, NumberOrText>>> pairs_of_numbers_or_texts(std::string_view key);
   bool holds_table(std::string_view key) const;
+  bool holds_number(std::string_view key) const;
+  bool holds_boolean(std::string_view key) const;
   bool holds_text(std::string_view key) const;
   /// Line of `key` in the file, from 1; without such a key that of the table; 0 for the root.
   int line(std::string_view key = {}) const;

@@ -1,7 +1,7 @@
-// The table of all kinds and their parameters: docs/elements.md shows it.
-#include <algorithm>
+// The table of the built-in kinds and their parameters: docs/elements.md shows it.
+#include "styles/elements/kinds.h"
 
-#include "styles/elements/parameters.h"
+#include <algorithm>
 
 namespace blockrand::elements {
 namespace {
@@ -487,13 +487,7 @@ const Table& table() {
 
 }  // namespace
 
-std::span<const ElementKind> element_kinds() { return table().kinds; }
+std::span<const ElementKind> built_in_kinds() { return table().kinds; }
 std::span<const Generator> generators() { return table().generators; }
-
-const ElementKind* find_element_kind(std::string_view name) {
-  for (const ElementKind& k : element_kinds())
-    if (k.name == name) return &k;
-  return nullptr;
-}
 
 }  // namespace blockrand::elements

@@ -24,6 +24,45 @@ std::string with_unit(double v, const std::string& unit) {
   return base::shortest(v) + (unit.empty() ? "" : " " + unit);
 }
 
+/// What the name of a moulding, or a program, means.
+tl::expected<ProfileProgram, std::string> profile_program(const ElementKind& kind, const std::string& parameter,
+                                                          const std::string& text, const ProfileLibrary& profiles) {
+  if (text.find('{') != std::string::npos) {
+    auto program = parse_profile(text);
+    if (!program) return tl::unexpected(fmt::format("{}: \"{}\": {}", kind.name, parameter, program.error().text()));
+    for (const int steps : {arc_steps_at(1), arc_steps_at(2)})
+      if (const auto section = section_of(scaled_to_height(trace(*program, steps), 1, 10)); !section)
+        return tl::unexpected(fmt::format("{}: \"{}\": {}", kind.name, parameter, section.error()));
+    return std::move(*program);
+  }
+  if (const auto found = profiles.find(text); found != profiles.end()) return found->second.program;
+  std::vector<std::string> known;
+  for (const auto& [name, preset] : profiles) known.push_back(name);
+  return tl::unexpected(fmt::format("{}: there is no profile \"{}\"{}", kind.name, text, suggestion(text, known)));
+}
+
+/// What the name of an edge's shape, or a program, means; empty: straight.
+tl::expected<ProfileProgram, std::string> edge_program(const ElementKind& kind, const std::string& parameter,
+                                                       const std::string& text) {
+  std::string_view program = text;
+  if (text.find('{') == std::string::npos) {
+    std::vector<std::string> known;
+    const EdgeShape* shape = nullptr;
+    for (const EdgeShape& s : edge_shapes()) {
+      known.emplace_back(s.name);
+      if (s.name == text) shape = &s;
+    }
+    if (!shape)
+      return tl::unexpected(
+          fmt::format("{}: there is no shape of an edge \"{}\"{}", kind.name, text, suggestion(text, known)));
+    program = shape->program;
+  }
+  if (program.empty()) return ProfileProgram{};
+  auto parsed = parse_profile(program);
+  if (!parsed) return tl::unexpected(fmt::format("{}: \"{}\": {}", kind.name, parameter, parsed.error().text()));
+  return std::move(*parsed);
+}
+
 }  // namespace
 
 tl::expected<Values, std::string> Values::check(const ElementKind& kind, std::span<const Parameter> given,
@@ -79,56 +118,39 @@ tl::expected<Values, std::string> Values::check(const ElementKind& kind, std::sp
       case ParameterInfo::Type::profile: {
         if (!text)
           return tl::unexpected(fmt::format("{}: \"{}\" wants the name of a profile or a program", kind.name, p.name));
-        if (text->find('{') != std::string::npos) {
-          auto program = parse_profile(*text);
-          if (!program) return tl::unexpected(fmt::format("{}: \"{}\": {}", kind.name, p.name, program.error().text()));
-          for (const int steps : {arc_steps_at(1), arc_steps_at(2)})
-            if (const auto section = section_of(scaled_to_height(trace(*program, steps), 1, 10)); !section)
-              return tl::unexpected(fmt::format("{}: \"{}\": {}", kind.name, p.name, section.error()));
-          out.programs_[i] = std::move(*program);
-        } else if (const auto found = profiles.find(*text); found != profiles.end()) {
-          out.programs_[i] = found->second.program;
-        } else {
-          std::vector<std::string> known;
-          for (const auto& [name, preset] : profiles) known.push_back(name);
-          return tl::unexpected(
-              fmt::format("{}: there is no profile \"{}\"{}", kind.name, *text, suggestion(*text, known)));
-        }
+        auto program = profile_program(kind, p.name, *text, profiles);
+        if (!program) return tl::unexpected(program.error());
+        out.programs_[i] = std::move(*program);
         break;
       }
       case ParameterInfo::Type::edge: {
         if (!text)
           return tl::unexpected(
               fmt::format("{}: \"{}\" wants the name of an edge's shape or a program", kind.name, p.name));
-        std::string_view program = *text;
-        if (text->find('{') == std::string::npos) {
-          std::vector<std::string> known;
-          const EdgeShape* shape = nullptr;
-          for (const EdgeShape& s : edge_shapes()) {
-            known.emplace_back(s.name);
-            if (s.name == *text) shape = &s;
-          }
-          if (!shape)
-            return tl::unexpected(
-                fmt::format("{}: there is no shape of an edge \"{}\"{}", kind.name, *text, suggestion(*text, known)));
-          program = shape->program;
-        }
-        if (program.empty()) break;
-        auto parsed = parse_profile(program);
-        if (!parsed) return tl::unexpected(fmt::format("{}: \"{}\": {}", kind.name, p.name, parsed.error().text()));
-        out.programs_[i] = std::move(*parsed);
+        auto program = edge_program(kind, p.name, *text);
+        if (!program) return tl::unexpected(program.error());
+        out.programs_[i] = std::move(*program);
         break;
       }
     }
   }
   for (std::size_t i = 0; i < n; ++i) {
     const ParameterInfo& info = kind.parameters[i];
-    if (info.type != ParameterInfo::Type::profile || set[i]) continue;
-    const auto found = profiles.find(info.words.at(0));
-    if (found == profiles.end())
-      return tl::unexpected(fmt::format("{}: the library lacks the profile \"{}\" that \"{}\" is by default", kind.name,
-                                        info.words[0], info.name));
-    out.programs_[i] = found->second.program;
+    if (set[i]) continue;
+    // Variants of a kind may have programs as defaults.
+    if (info.type == ParameterInfo::Type::profile) {
+      const std::string& name = info.words.at(0);
+      if (name.find('{') == std::string::npos && !profiles.contains(name))
+        return tl::unexpected(fmt::format("{}: the library lacks the profile \"{}\" that \"{}\" is by default",
+                                          kind.name, name, info.name));
+      auto program = profile_program(kind, info.name, name, profiles);
+      if (!program) return tl::unexpected(program.error());
+      out.programs_[i] = std::move(*program);
+    } else if (info.type == ParameterInfo::Type::edge) {
+      auto program = edge_program(kind, info.name, info.words.at(0));
+      if (!program) return tl::unexpected(program.error());
+      out.programs_[i] = std::move(*program);
+    }
   }
   return out;
 }
@@ -144,6 +166,10 @@ bool Values::has(std::string_view name) const {
   for (const ParameterInfo& info : kind_->parameters)
     if (info.name == name) return true;
   return false;
+}
+
+bool Values::has_word(std::string_view name) const {
+  return has(name) && kind_->parameters[index(name)].type == ParameterInfo::Type::word;
 }
 
 const std::string& Values::word(std::string_view name) const {

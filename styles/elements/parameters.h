@@ -1,10 +1,18 @@
 // Checked parameters of one element on their way to its generator. Internal to this folder.
 #pragma once
 
-#include "styles/elements/make_element.h"
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "styles/elements/element_kind.h"
 #include "styles/elements/mesh_builder.h"
 #include "styles/elements/opening_edges.h"
 #include "styles/elements/opening_shape.h"
+#include "styles/elements/profile_library.h"
 
 namespace blockrand::elements {
 
@@ -25,12 +33,15 @@ class Values {
   std::optional<Profile> edge(std::string_view name) const;
   /// Any preset of the library, traced; empty when there is none of that name.
   Profile preset(std::string_view name) const;
+  /// A program, traced the same way.
+  Profile traced(const ProfileProgram& program) const;
   bool has(std::string_view name) const;
+  /// The same, and it is a word: element files may have numbers of any name.
+  bool has_word(std::string_view name) const;
   int detail() const { return count("detail"); }
 
  private:
   std::size_t index(std::string_view name) const;
-  Profile traced(const ProfileProgram& program) const;
   const ElementKind* kind_ = nullptr;
   const ProfileLibrary* profiles_ = nullptr;
   std::vector<double> numbers_;
@@ -65,9 +76,6 @@ Made make_balcony(const Request&, Element&);
 Made make_bay(const Request&, Element&);
 Made make_quoin(const Request&, Element&);
 Made make_pilaster(const Request&, Element&);
-
-/// The generator of a kind, parallel to element_kinds().
-std::span<const Generator> generators();
 
 /// Straight pieces of a segmental head over an opening (m wide), and of a quarter circle of a moulding, at a level of
 /// detail. Gateways and shop fronts show their arcs more than windows do.

@@ -2,7 +2,6 @@
 #include "styles/elements/profile_library.h"
 
 #include "pipeline/base/toml_file.h"
-#include "styles/elements/built_in_profiles.h"
 
 namespace blockrand::elements {
 namespace {
@@ -38,16 +37,6 @@ void read_preset(base::TomlTable table, const std::string& name, ProfileLibrary&
 void parse_profile_preset(std::string_view text, const std::string& file, const std::string& name,
                           ProfileLibrary& library) {
   read_preset(base::TomlTable::parse(text, file), name, library);
-}
-
-const ProfileLibrary& built_in_profiles() {
-  static const ProfileLibrary library = [] {
-    ProfileLibrary out;
-    for (const BuiltInProfile& p : kBuiltInProfiles)
-      parse_profile_preset(p.text, "configs/profiles/" + std::string(p.name) + ".toml", std::string(p.name), out);
-    return out;
-  }();
-  return library;
 }
 
 }  // namespace blockrand::elements

@@ -23,7 +23,4 @@ using ProfileLibrary = std::map<std::string, ProfilePreset, std::less<>>;
 void parse_profile_preset(std::string_view text, const std::string& file, const std::string& name,
                           ProfileLibrary& library);
 
-/// The presets of configs/profiles as they were when the program was compiled: elements work without any files.
-const ProfileLibrary& built_in_profiles();
-
 }  // namespace blockrand::elements

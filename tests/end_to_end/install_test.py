@@ -21,9 +21,9 @@ INSTALLED = ['bin/blockrand', 'share/bash-completion/completions/blockrand', 'sh
 # The program holds jemalloc where that was installed when it was built.
 if os.path.exists('/usr/share/doc/libjemalloc-dev/copyright'):
     INSTALLED.append('share/doc/blockrand/LICENSES.jemalloc')
-# Styles, district rules, grammars and profiles are many and grow: whatever the source tree holds.
+# Styles, district rules, grammars, profiles and elements are many and grow: whatever the source tree holds.
 INSTALLED += ['share/blockrand/' + os.path.relpath(os.path.join(folder, name), SOURCE)
-              for part in ('styles', 'districts', 'grammars', 'profiles') for folder, _, names in os.walk(os.path.join(SOURCE, 'configs', part))
+              for part in ('styles', 'districts', 'grammars', 'profiles', 'elements') for folder, _, names in os.walk(os.path.join(SOURCE, 'configs', part))
               for name in names]
 # Of what the Debian package holds, what is called otherwise there, or stands in another file (None).
 DEBIAN = {'share/man/man1/blockrand.1': 'share/man/man1/blockrand.1.gz',

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include "pipeline/attributes/defaults.h"
 #include "pipeline/base/error.h"
@@ -17,6 +18,7 @@
 #include "styles/classify/votes.h"
 #include "styles/districts/presets.h"
 #include "styles/districts/read_rule_set.h"
+#include "styles/elements/element_file.h"
 #include "styles/elements/profile_library.h"
 #include "tests/fuzz/input_file.h"
 
@@ -41,6 +43,12 @@ const districts::RuleSets& known() {
     return book;
   }();
   return read;
+}
+
+/// What element files may use.
+const elements::ProfileLibrary& profiles() {
+  static const elements::ElementCatalogue read = elements::read_element_catalogue(std::vector<std::string>{kConfigs});
+  return read.profiles();
 }
 
 /// A copy of configs/ of which the input replaces one file: readers look for their files themselves.
@@ -99,9 +107,15 @@ void read(std::uint8_t kind, const std::uint8_t* data, std::size_t size) {
     case 10:
       (void)classify::EvidenceModel::read(input());
       break;
-    default: {
+    case 11: {
       elements::ProfileLibrary library;
       elements::parse_profile_preset({reinterpret_cast<const char*>(data), size}, "input.toml", "input", library);
+      break;
+    }
+    default: {
+      const elements::ElementFile file =
+          elements::parse_element_file({reinterpret_cast<const char*>(data), size}, "input.toml", "input", profiles());
+      elements::check_element_file(file, profiles());
       break;
     }
   }
@@ -112,7 +126,7 @@ void read(std::uint8_t kind, const std::uint8_t* data, std::size_t size) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   try {
-    read(data[0] % 12, data + 1, size - 1);
+    read(data[0] % 13, data + 1, size - 1);
   } catch (const base::InputError&) {
   }
   return 0;

@@ -134,7 +134,7 @@ def seed_configs(seeds, program):
              "styles/tags.toml": 8, "styles/neighbours.toml": 9}
     for path in sorted(configs.rglob("*.toml")):
         name = path.relative_to(configs).as_posix()
-        kind = first.get(name, {"districts": 2, "profiles": 11, "weights": 10}.get(path.parent.name))
+        kind = first.get(name, {"districts": 2, "profiles": 11, "elements": 12, "weights": 10}.get(path.parent.name))
         if kind is not None:
             seeds.add("configs", name.replace("/", "_"), path, kind)
     test = (ROOT / "tests" / "unit" / "attributes" / "overrides_test.cpp").read_text()

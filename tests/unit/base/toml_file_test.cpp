@@ -100,6 +100,25 @@ TEST(TomlTable, WholeNumbersThatADoubleRoundsAreNumbers) {
   EXPECT_EQ(t.pairs("p")->at(0).second, 9007199254740992.0);
 }
 
+TEST(TomlTable, WhereCalculationsMayStandNumbersMayToo) {
+  TomlTable t = TomlTable::parse(
+      "a = 3\nb = 'w / 2'\nl = [1.5, 'h']\np = [[0, 'h'], ['w', 2]]\nbad = [true]\nodd = [[1, 2, 3]]\nn = nan\nt = "
+      "false",
+      "t.toml");
+  EXPECT_EQ(t.number_or_text("a"), NumberOrText(3.0));
+  EXPECT_EQ(t.number_or_text("b"), NumberOrText("w / 2"));
+  EXPECT_FALSE(t.number_or_text("c"));
+  EXPECT_EQ(t.numbers_or_texts("l"), (std::vector<NumberOrText>{1.5, "h"}));
+  const std::vector<std::pair<NumberOrText, NumberOrText>> pairs{{0.0, "h"}, {"w", 2.0}};
+  EXPECT_EQ(t.pairs_of_numbers_or_texts("p"), pairs);
+  EXPECT_THAT(error_of([&] { t.numbers_or_texts("bad"); }),
+              StartsWith("t.toml:5:8: bad must hold numbers and texts only, not a boolean"));
+  EXPECT_THAT(error_of([&] { t.pairs_of_numbers_or_texts("odd"); }), HasSubstr("pairs of numbers and texts only"));
+  EXPECT_THAT(error_of([&] { t.number_or_text("n"); }), HasSubstr("n must be a number or a text"));
+  EXPECT_THAT(error_of([&] { t.numbers_or_texts("a"); }), HasSubstr("a must be an array"));
+  EXPECT_TRUE(t.holds_number("a") && !t.holds_number("b") && t.holds_boolean("t") && !t.holds_boolean("a"));
+}
+
 TEST(TomlTable, AnUnaskedKeyIsAnErrorWithTheNearestKnownOne) {
   TomlTable t = TomlTable::parse("storeys = 3\nheigth = 12\n", "t.toml");
   t.integer("storeys", 0, 99);

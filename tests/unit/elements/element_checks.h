@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "styles/elements/built_element.h"
-#include "styles/elements/make_element.h"
+#include "styles/elements/element_catalogue.h"
 
 namespace blockrand::elements::checks {
 

@@ -10,10 +10,11 @@
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/picture/camera.h"
 #include "pipeline/picture/render.h"
-#include "styles/elements/make_element.h"
+#include "styles/elements/element_catalogue.h"
 #include "styles/elements/mesh_builder.h"
 #include "styles/elements/sweep.h"
 #include "tests/unit/elements/mesh_measures.h"
+#include "tests/unit/elements/shipped_elements.h"
 
 namespace blockrand::elements {
 namespace {
@@ -233,14 +234,14 @@ std::vector<Shown> shown_of(const ElementKind& kind) {
 TEST(ElementPictures, WritesFigures) {
   const char* const folder = std::getenv("ELEMENTS_PICTURES");
   if (!folder) GTEST_SKIP() << "ELEMENTS_PICTURES names no folder";
-  for (const ElementKind& kind : element_kinds()) {
+  for (const ElementKind& kind : shipped().kinds()) {
     const char* const only = std::getenv("ELEMENTS_KIND");
     if (only && kind.name != only) continue;
     Wall wall;
     const bool standing = kind.semantic == ElementClass::door || kind.name == "shop_window";
     double x = 0, top = 0, bottom = 0;
     for (const Shown& s : shown_of(kind)) {
-      const auto element = make_element(kind.name, s.width, s.height, s.parameters);
+      const auto element = shipped().make(kind.name, s.width, s.height, s.parameters);
       ASSERT_TRUE(element.has_value()) << element.error();
       const Bounds3 box = bounds_of(element->mesh);
       const double gap = kind.name == "console" ? 0.25 : 0.35;
@@ -262,7 +263,7 @@ TEST(ElementPictures, WritesFigures) {
   // A chain with an avant-corps, an obtuse and an acute corner, interrupted.
   Wall wall;
   const std::vector<Point2> chain{{0, 0}, {3, 0}, {3, -0.5}, {5, -0.5}, {5, 0}, {8, 0}, {9.5, 1.5}, {9.5, 5}};
-  const auto preset = built_in_profiles().at("main_cornice_brackets");
+  const auto preset = shipped().profiles().at("main_cornice_brackets");
   SweepOptions options;
   options.base = 2.2;
   const std::vector<std::pair<double, double>> gaps{{8.0, 8.6}};
@@ -274,8 +275,8 @@ TEST(ElementPictures, WritesFigures) {
   wall.add(cornice->mesh, {});
   SweepOptions low;
   low.part = Part::wall;
-  const auto foot =
-      sweep(scaled_to_height(trace(built_in_profiles().at("plinth_moulded").program, 5), 0.7, 0.12), chain, false, low);
+  const auto foot = sweep(scaled_to_height(trace(shipped().profiles().at("plinth_moulded").program, 5), 0.7, 0.12),
+                          chain, false, low);
   ASSERT_TRUE(foot.has_value());
   wall.add(foot->mesh, {});
   for (std::size_t i = 0; i + 1 < chain.size(); ++i) {

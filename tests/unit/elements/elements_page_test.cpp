@@ -10,9 +10,10 @@
 #include <iterator>
 
 #include "pipeline/base/text.h"
-#include "styles/elements/make_element.h"
+#include "styles/elements/element_catalogue.h"
 #include "styles/elements/mesh_builder.h"
 #include "tests/unit/elements/mesh_measures.h"
+#include "tests/unit/elements/shipped_elements.h"
 
 namespace blockrand::elements {
 namespace {
@@ -62,7 +63,7 @@ std::string table(const ElementKind& kind) {
   out += "\nTriangles at detail 0, 1, 2:";
   for (const double detail : {0.0, 1.0, 2.0}) {
     const std::vector<Parameter> parameters{{"detail", detail}};
-    const auto e = make_element(kind.name, kind.width.usual, kind.height.usual, parameters);
+    const auto e = shipped().make(kind.name, kind.width.usual, kind.height.usual, parameters);
     out += fmt::format("{} {}", detail > 0 ? "," : "", e ? triangle_count(e->mesh) : 0);
   }
   return out + ".\n";
@@ -70,7 +71,7 @@ std::string table(const ElementKind& kind) {
 
 std::string profiles() {
   std::string out = "| profile | height, m | what it is |\n|---|---|---|\n";
-  for (const auto& [name, p] : built_in_profiles())
+  for (const auto& [name, p] : shipped().profiles())
     out += fmt::format("| `{}` | {} to {}, usually {} | {} |\n", name, base::shortest(p.least), base::shortest(p.most),
                        base::shortest(p.typical), p.meaning);
   return out;
@@ -78,7 +79,7 @@ std::string profiles() {
 
 std::vector<std::pair<std::string, std::string>> sections() {
   std::vector<std::pair<std::string, std::string>> out;
-  for (const ElementKind& kind : element_kinds()) out.emplace_back(kind.name, table(kind));
+  for (const ElementKind& kind : shipped().kinds()) out.emplace_back(kind.name, table(kind));
   out.emplace_back("profiles", profiles());
   return out;
 }
@@ -100,7 +101,7 @@ TEST(ElementsPage, ListsKindsAndParametersOfTheCode) {
 
 TEST(ElementsPage, HasAFigureOfEachKind) {
   const std::string text = page();
-  for (const ElementKind& kind : element_kinds()) {
+  for (const ElementKind& kind : shipped().kinds()) {
     const std::string figure = "pictures/elements/" + kind.name + ".png";
     EXPECT_THAT(text, testing::HasSubstr("](" + figure + ")")) << "show the figure";
     EXPECT_TRUE(std::filesystem::exists(BLOCKRAND_SOURCE_DIR "/docs/" + figure)) << figure;

@@ -4,8 +4,9 @@
 
 #include <cmath>
 
-#include "styles/elements/make_element.h"
+#include "styles/elements/element_catalogue.h"
 #include "tests/unit/elements/element_checks.h"
+#include "tests/unit/elements/shipped_elements.h"
 
 namespace blockrand::elements {
 namespace {
@@ -16,13 +17,13 @@ using testing::HasSubstr;
 constexpr double kPi = 3.14159265358979;
 
 Element made(double width, double height, const std::vector<Parameter>& parameters) {
-  const auto element = make_element("shaped_window", width, height, parameters);
+  const auto element = shipped().make("shaped_window", width, height, parameters);
   EXPECT_TRUE(element.has_value()) << (element ? "" : element.error());
   return element ? *element : Element{};
 }
 
 std::string error(const std::vector<Parameter>& parameters) {
-  const auto element = make_element("shaped_window", 1, 2, parameters);
+  const auto element = shipped().make("shaped_window", 1, 2, parameters);
   return element ? std::string() : element.error();
 }
 

@@ -1,5 +1,5 @@
-// What make_element() refuses and how it says so; what single elements look like in numbers.
-#include "styles/elements/make_element.h"
+// What ElementCatalogue::make() refuses and how it says so; what single elements look like in numbers.
+#include "styles/elements/element_catalogue.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,6 +9,7 @@
 #include "styles/elements/mesh_builder.h"
 #include "tests/unit/elements/element_checks.h"
 #include "tests/unit/elements/mesh_measures.h"
+#include "tests/unit/elements/shipped_elements.h"
 
 namespace blockrand::elements {
 namespace {
@@ -17,13 +18,13 @@ using model::Point2;
 using testing::HasSubstr;
 
 Element made(std::string_view kind, double width, double height, const std::vector<Parameter>& parameters = {}) {
-  const auto element = make_element(kind, width, height, parameters);
+  const auto element = shipped().make(kind, width, height, parameters);
   EXPECT_TRUE(element.has_value()) << (element ? "" : element.error());
   return element ? *element : Element{};
 }
 
 std::string error(std::string_view kind, double width, double height, const std::vector<Parameter>& parameters = {}) {
-  const auto element = make_element(kind, width, height, parameters);
+  const auto element = shipped().make(kind, width, height, parameters);
   return element ? std::string() : element.error();
 }
 
@@ -81,38 +82,39 @@ TEST(MakeElement, TellsWhatDoesNotFit) {
 }
 
 TEST(MakeFittingElement, WhatFitsIsMadeAsAsked) {
-  const auto made = make_fitting_element("casement_window", 1.1, 1.6);
+  const auto made = shipped().make_fitting("casement_window", 1.1, 1.6);
   ASSERT_TRUE(made);
   EXPECT_EQ(made->told, "");
-  EXPECT_EQ(made->element.name, make_element("casement_window", 1.1, 1.6)->name);
+  EXPECT_EQ(made->element.name, shipped().make("casement_window", 1.1, 1.6)->name);
 }
 
 TEST(MakeFittingElement, WhatDoesNotFitIsMadeSimplerAndTold) {
-  const auto shop = make_fitting_element("shop_window", 3.0, 2.2, std::vector<Parameter>{{"door", "middle"}});
+  const auto shop = shipped().make_fitting("shop_window", 3.0, 2.2, std::vector<Parameter>{{"door", "middle"}});
   ASSERT_TRUE(shop) << shop.error();
   EXPECT_THAT(shop->told, HasSubstr("no room for its door below the transom; made instead: shop window 3.00 x 2.20"));
-  const auto pilaster = make_fitting_element("pilaster", 0.5, 900);
+  const auto pilaster = shipped().make_fitting("pilaster", 0.5, 900);
   ASSERT_TRUE(pilaster) << pilaster.error();
   EXPECT_THAT(pilaster->told, HasSubstr("the height is 900 m"));
-  const auto needle = make_fitting_element("plinth", 4, 0.8, std::vector<Parameter>{{"left_turn", 180.0}});
+  const auto needle = shipped().make_fitting("plinth", 4, 0.8, std::vector<Parameter>{{"left_turn", 180.0}});
   ASSERT_TRUE(needle) << needle.error();
   EXPECT_THAT(needle->told, HasSubstr("\"left_turn\" is 180 degrees"));
-  EXPECT_EQ(needle->element.mesh.vertices.size(), make_element("plinth", 4, 0.8)->mesh.vertices.size()) << "cut square";
+  EXPECT_EQ(needle->element.mesh.vertices.size(), shipped().make("plinth", 4, 0.8)->mesh.vertices.size())
+      << "cut square";
 }
 
 TEST(MakeFittingElement, WhatHasNoRoomAtAllIsLeftOut) {
-  EXPECT_FALSE(make_fitting_element("casement_window", 0.2, 1.6));
-  EXPECT_FALSE(make_fitting_element("spaceship", 1, 1));
-  EXPECT_FALSE(make_fitting_element("casement_window", 1.1, 1.6, std::vector<Parameter>{{"leafs", 2.0}}));
+  EXPECT_FALSE(shipped().make_fitting("casement_window", 0.2, 1.6));
+  EXPECT_FALSE(shipped().make_fitting("spaceship", 1, 1));
+  EXPECT_FALSE(shipped().make_fitting("casement_window", 1.1, 1.6, std::vector<Parameter>{{"leafs", 2.0}}));
 }
 
 /// Anything from a hand's breadth to a tower is asked of every kind: what is not made is too small for it.
 TEST(MakeFittingElement, SizesAboveTheRangeAlwaysGiveSomething) {
-  for (const ElementKind& kind : element_kinds())
+  for (const ElementKind& kind : shipped().kinds())
     for (const double width : {kind.width.usual, kind.width.most, kind.width.most * 3, 200.0})
       for (const double height : {kind.height.usual, kind.height.most, kind.height.most * 3, 300.0}) {
         if (width < kind.width.least || height < kind.height.least) continue;
-        const auto made = make_fitting_element(kind.name, width, height);
+        const auto made = shipped().make_fitting(kind.name, width, height);
         EXPECT_TRUE(made) << kind.name << " " << width << " x " << height << ": " << made.error();
       }
 }
@@ -131,17 +133,11 @@ TEST(MakeElement, ProfilesMayBePrograms) {
               HasSubstr("does not stand out"));
 }
 
-TEST(MakeElement, UsesTheLibraryThatIsGiven) {
-  ProfileLibrary mine;
-  EXPECT_THAT(make_element("string_course", 2, 0.3, {}, mine).error(),
-              HasSubstr("the library lacks the profile \"string_course\""));
-  parse_profile_preset(
-      "meaning = \"own\"\nheight = [0.1, 0.2, 0.3]\nprogram = 'Modifications { line, abs, 90, 2; line, abs, 0, 4; "
-      "line, abs, -90, 2; }'",
-      "own.toml", "string_course", mine);
-  const auto e = make_element("string_course", 2, 0.3, std::vector<Parameter>{{"projection", 0.5}}, mine);
-  ASSERT_TRUE(e.has_value()) << e.error();
-  EXPECT_NEAR(bounds_of(e->mesh).most.z, 0.15, 1e-3);
+TEST(MakeElement, WithoutProfilesOnlyWhatNeedsNoneIsMade) {
+  const ElementCatalogue none;
+  EXPECT_TRUE(none.profiles().empty());
+  EXPECT_THAT(none.make("string_course", 2, 0.3).error(), HasSubstr("the library lacks the profile \"string_course\""));
+  EXPECT_TRUE(none.make("console", 0.2, 0.3));
 }
 
 TEST(MakeElement, NamesWhatItMade) {
@@ -221,7 +217,7 @@ TEST(Windows, TheUsualBoxWindowIsCheap) {
 }
 
 TEST(AllKinds, DetailLowersTheCountOfFaces) {
-  for (const ElementKind& kind : element_kinds()) {
+  for (const ElementKind& kind : shipped().kinds()) {
     std::size_t before = 0;
     for (const double detail : {0.0, 1.0, 2.0}) {
       const Element e = made(kind.name, kind.width.usual, kind.height.usual, {{"detail", detail}});
@@ -234,7 +230,7 @@ TEST(AllKinds, DetailLowersTheCountOfFaces) {
 
 TEST(AllKinds, ParametersAreNamedOnceAndKeepTheirRanges) {
   std::set<std::string> kinds;
-  for (const ElementKind& kind : element_kinds()) {
+  for (const ElementKind& kind : shipped().kinds()) {
     EXPECT_TRUE(kinds.insert(kind.name).second);
     EXPECT_TRUE(kind.width.least <= kind.width.usual && kind.width.usual <= kind.width.most) << kind.name;
     EXPECT_TRUE(kind.height.least <= kind.height.usual && kind.height.usual <= kind.height.most) << kind.name;
@@ -245,7 +241,7 @@ TEST(AllKinds, ParametersAreNamedOnceAndKeepTheirRanges) {
       const bool number = p.type == ParameterInfo::Type::number || p.type == ParameterInfo::Type::whole;
       EXPECT_TRUE(!number || (p.least <= p.initial && p.initial <= p.most)) << kind.name << p.name;
       EXPECT_TRUE(p.type != ParameterInfo::Type::word || p.initial < static_cast<double>(p.words.size())) << p.name;
-      EXPECT_TRUE(p.type != ParameterInfo::Type::profile || built_in_profiles().contains(p.words.at(0))) << p.name;
+      EXPECT_TRUE(p.type != ParameterInfo::Type::profile || shipped().profiles().contains(p.words.at(0))) << p.name;
     }
     EXPECT_TRUE(names.contains("detail")) << kind.name;
   }
@@ -286,7 +282,7 @@ TEST(AllKinds, EveryParameterCounts) {
       {"dominant", {{"top", "round"}, {"top_size", 0.2}, {"right", "round"}, {"right_size", 0.2}}},
       {"upright_bars", {{"rise", 0.3}}},
   };
-  for (const ElementKind& kind : element_kinds())
+  for (const ElementKind& kind : shipped().kinds())
     for (const ParameterInfo& p : kind.parameters) {
       std::vector<Parameter> base;
       const auto has = [&](const std::string& name) {
@@ -315,7 +311,10 @@ TEST(AllKinds, EveryParameterCounts) {
                                                             : p.initial + (half - p.initial) * 0.3});
           break;
         case ParameterInfo::Type::whole:
-          other.push_back({p.name, p.initial == p.least ? p.initial + 1 : p.initial - 1});
+          // As many lights as leaves is the default.
+          other.push_back({p.name, p.name == "upper_leaves" ? 3
+                                   : p.initial == p.least   ? p.initial + 1
+                                                            : p.initial - 1});
           break;
         case ParameterInfo::Type::word:
           other.push_back({p.name, p.words[p.initial == 0 ? 1 : 0]});

@@ -1,5 +1,5 @@
-// Finds the kind, checks size and parameters, and names what was made.
-#include "styles/elements/make_element.h"
+// Checks size and parameters, has the element made, and names it.
+#include "styles/elements/make_kind.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,6 @@
 #include <utility>
 
 #include "pipeline/base/text.h"
-#include "pipeline/base/toml_file.h"
-#include "styles/elements/parameters.h"
 
 namespace blockrand::elements {
 namespace {
@@ -20,9 +18,9 @@ std::string title(const ElementKind& kind, double width, double height, const Va
   for (char& c : out)
     if (c == '_') c = ' ';
   out += fmt::format(" {:.2f} x {:.2f}", width, height);
-  if (values.has("head") && !values.is("head", "straight")) out += ", " + values.word("head") + " head";
+  if (values.has_word("head") && !values.is("head", "straight")) out += ", " + values.word("head") + " head";
   for (const char* trim : {"surround", "pediment"})
-    if (values.has(trim) && kind.name != trim && !values.is(trim, "none")) {
+    if (values.has_word(trim) && kind.name != trim && !values.is(trim, "none")) {
       std::string text = values.word(trim);
       for (char& c : text)
         if (c == '_') c = ' ';
@@ -76,38 +74,23 @@ std::vector<Parameter> bare(const ElementKind& kind, std::vector<Parameter> give
 
 }  // namespace
 
-tl::expected<FittedElement, std::string> make_fitting_element(std::string_view name, double width, double height,
-                                                              std::span<const Parameter> parameters,
-                                                              const ProfileLibrary& profiles) {
-  auto asked = make_element(name, width, height, parameters, profiles);
+tl::expected<FittedElement, std::string> make_fitting_kind(const ElementKind& kind, const Maker& maker, double width,
+                                                           double height, std::span<const Parameter> parameters,
+                                                           const ProfileLibrary& profiles) {
+  auto asked = make_kind(kind, maker, width, height, parameters, profiles);
   if (asked) return FittedElement{std::move(*asked), {}};
-  const ElementKind* kind = find_element_kind(name);
-  if (!kind) return tl::unexpected(asked.error());
-  width = std::min(width, kind->width.most);
-  height = std::min(height, kind->height.most);
-  const std::vector<Parameter> limited = in_range(*kind, parameters);
-  auto made = make_element(name, width, height, limited, profiles);
-  if (!made) made = make_element(name, width, height, bare(*kind, limited), profiles);
+  width = std::min(width, kind.width.most);
+  height = std::min(height, kind.height.most);
+  const std::vector<Parameter> limited = in_range(kind, parameters);
+  auto made = make_kind(kind, maker, width, height, limited, profiles);
+  if (!made) made = make_kind(kind, maker, width, height, bare(kind, limited), profiles);
   if (!made) return tl::unexpected(asked.error());
   std::string told = asked.error() + "; made instead: " + made->name;
   return FittedElement{std::move(*made), std::move(told)};
 }
 
-tl::expected<Element, std::string> make_element(std::string_view name, double width, double height,
-                                                std::span<const Parameter> parameters, const ProfileLibrary& profiles) {
-  const auto kinds = element_kinds();
-  std::size_t k = 0;
-  while (k < kinds.size() && kinds[k].name != name) ++k;
-  if (k == kinds.size()) {
-    std::vector<std::string> known;
-    for (const ElementKind& kind : kinds) known.push_back(kind.name);
-    const std::string near = base::nearest(name, known);
-    std::string list;
-    for (const std::string& n : known) list += (list.empty() ? "" : ", ") + n;
-    return tl::unexpected(fmt::format("there is no element \"{}\"; {}", name,
-                                      near.empty() ? "known: " + list : fmt::format("did you mean \"{}\"?", near)));
-  }
-  const ElementKind& kind = kinds[k];
+tl::expected<Element, std::string> make_kind(const ElementKind& kind, const Maker& maker, double width, double height,
+                                             std::span<const Parameter> parameters, const ProfileLibrary& profiles) {
   const auto in_range = [&](double v, double least, double most, const char* what) -> std::string {
     if (v >= least && v <= most) return {};
     return fmt::format("{}: the {} is {} m; it goes from {} to {} m", kind.name, what, base::shortest(v),
@@ -121,7 +104,7 @@ tl::expected<Element, std::string> make_element(std::string_view name, double wi
   element.kind = kind.name;
   element.semantic = kind.semantic;
   const Request request{model::snap(width), model::snap(height), *values};
-  if (const Made made = generators()[k](request, element); !made)
+  if (const Made made = maker(request, element); !made)
     return tl::unexpected(fmt::format("{} {:.2f} x {:.2f}: {}", kind.name, width, height, made.error()));
   element.name = title(kind, width, height, *values);
   return element;
