@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "importers/reference/triangle_model.h"
 #include "pipeline/attributes/rule_sets.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/parallel.h"
@@ -79,8 +80,9 @@ int check(const Settings& s) {
     try {
       const attributes::ReadRuleSets read = attributes::read_rule_sets(s.build.configs, name);
       text += summary(read.book);
-      for (std::string& what :
-           facades::unread_parameters(read.book, facades::read_grammars(s.build.configs, read.book.presets)))
+      for (std::string& what : facades::unread_parameters(
+               read.book,
+               facades::read_grammars(s.build.configs, read.book.presets, importers::reference::read_triangle_model)))
         errors.push_back(std::move(what));
       return true;
     } catch (const base::InputError& error) {

@@ -80,7 +80,8 @@ Count check_file(const Settings& s, const std::string& file) {
   std::vector<grammar::Diagnostic> all = program.diagnostics;
   // What could not be read would make checks tell of what follows from that only.
   if (!grammar::has_errors(all)) {
-    const std::vector<grammar::Diagnostic> checked = grammar::check(program, rule_check_options());
+    const std::vector<grammar::Diagnostic> checked =
+        grammar::check(program, rule_check_options(rule_elements(s, file)));
     all.insert(all.end(), checked.begin(), checked.end());
   }
   std::stable_sort(all.begin(), all.end(), [](const grammar::Diagnostic& a, const grammar::Diagnostic& b) {
@@ -172,7 +173,8 @@ int run_grammar(const std::vector<std::string>& arguments) {
     return kSuccess;
   }
   settings::refuse_unread(line, settings::kGrammar, line.settings.task,
-                          {{"lot", {"run"}},
+                          {{"configs", {"check", "run"}},
+                           {"lot", {"run"}},
                            {"storeys", {"run"}},
                            {"attr", {"run"}},
                            {"rule", {"run"}},

@@ -80,13 +80,13 @@ void add_leaves(const grammar::Derivation& result, const TrialHouse* house,
 
 /// \param house  whose walls the derivations began with; null: elements are their leaves' faces
 std::string glb_of(std::span<const grammar::Derivation> results, const TrialHouse* house,
-                   std::vector<std::string>& complaints) {
+                   const elements::ElementCatalogue& elements, std::vector<std::string>& complaints) {
   std::map<std::string, outputs::ColouredTriangles> groups;
   std::vector<outputs::ColouredTriangles> all;
   for (const grammar::Derivation& result : results) {
     add_leaves(result, house, groups);
     if (!house) continue;
-    for (outputs::ColouredTriangles& group : element_triangles(result, *house, complaints))
+    for (outputs::ColouredTriangles& group : element_triangles(result, *house, elements, complaints))
       all.push_back(std::move(group));
   }
   for (auto& [name, group] : groups) all.push_back(std::move(group));
@@ -178,7 +178,8 @@ int run_grammar_run(const settings::Settings& s) {
     print_result(result, s.rule_tree);
   }
   std::vector<std::string> complaints;
-  const std::string glb = glb_of(results, house ? &*house : nullptr, complaints);
+  const elements::ElementCatalogue elements = house ? rule_elements(s, file) : elements::ElementCatalogue();
+  const std::string glb = glb_of(results, house ? &*house : nullptr, elements, complaints);
   for (const std::string& what : complaints) fmt::print(stderr, "{}: {}\n", file, what);
   errors += complaints.size();
   if (!s.build.output.empty()) {

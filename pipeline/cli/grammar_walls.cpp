@@ -102,16 +102,17 @@ grammar::AttributeSource TrialHouse::values(std::size_t wall) const {
 
 std::vector<outputs::ColouredTriangles> element_triangles(const grammar::Derivation& derivation,
                                                           const TrialHouse& house,
+                                                          const elements::ElementCatalogue& elements,
                                                           std::vector<std::string>& complaints) {
   model::Region region;
-  facades::ElementLibrary library(region, attributes::Defaults{});
+  facades::ElementLibrary library(region, attributes::Defaults{}, elements);
   const facades::PartMaterials usual = library.usual_materials(house.part());
   std::map<std::string, outputs::ColouredTriangles> groups;
   for (const grammar::Leaf& leaf : derivation.leaves) {
     if (!leaf.order || leaf.order->arguments.empty() || !std::holds_alternative<std::string>(leaf.order->arguments[0]))
       continue;
     const std::string& name = std::get<std::string>(leaf.order->arguments[0]);
-    const elements::ElementKind* kind = elements::find_element_kind(name);
+    const auto* const kind = elements.find(name);
     if (!kind) continue;  // paint; unknown kinds are told by the check
     const auto [width, height] = facades::ElementLibrary::size(kind, leaf.shape.size.x, leaf.shape.size.y);
     library.ask(name, width, height, usual);

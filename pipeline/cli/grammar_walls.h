@@ -7,6 +7,7 @@
 
 #include "pipeline/facades/facade_context.h"
 #include "pipeline/outputs/gltf/triangle_glb.h"
+#include "styles/elements/element_catalogue.h"
 #include "styles/grammar/evaluation/derive.h"
 
 namespace blockrand::cli {
@@ -39,6 +40,7 @@ class TrialHouse {
 /// Elements that leaves order, where they are. \param complaints  gets what cannot be made, one sentence each
 std::vector<outputs::ColouredTriangles> element_triangles(const grammar::Derivation& derivation,
                                                           const TrialHouse& house,
+                                                          const elements::ElementCatalogue& elements,
                                                           std::vector<std::string>& complaints);
 
 }  // namespace blockrand::cli

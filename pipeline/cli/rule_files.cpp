@@ -7,6 +7,9 @@
 #include <optional>
 #include <regex>
 
+#include "importers/reference/triangle_model.h"
+#include "pipeline/base/error.h"
+#include "pipeline/cli/configs_folder.h"
 #include "pipeline/facades/facade_context.h"
 #include "pipeline/facades/grammar_library.h"
 #include "styles/grammar/evaluation/asset_files.h"
@@ -143,9 +146,22 @@ grammar::FileAccess rule_file_access(const settings::Settings& settings, const s
   return access;
 }
 
-grammar::CheckOptions rule_check_options() {
+elements::ElementCatalogue rule_elements(const settings::Settings& settings, const std::string& file) {
+  std::vector<std::string> folders;
+  try {
+    folders.push_back(configs_folder(settings.build.configs, program_file()));
+  } catch (const base::UsageError&) {
+    if (!settings.build.configs.empty()) throw;
+  }
+  std::string own = fs::path(file).parent_path().string();
+  if (own.empty()) own = ".";
+  if (fs::is_directory(own) && std::ranges::find(folders, own) == folders.end()) folders.push_back(std::move(own));
+  return elements::read_element_catalogue(folders, importers::reference::read_triangle_model);
+}
+
+grammar::CheckOptions rule_check_options(const elements::ElementCatalogue& elements) {
   grammar::CheckOptions out;
-  out.extensions = facades::extension_operations();
+  out.extensions = facades::extension_operations(elements);
   for (const facades::ContextAttribute& attribute : facades::context_attributes())
     out.context.emplace_back(attribute.name);
   return out;

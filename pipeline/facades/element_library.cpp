@@ -43,7 +43,9 @@ std::string_view ends_kept(std::string_view ends, bool keep_left, bool keep_righ
 
 }  // namespace
 
-ElementLibrary::ElementLibrary(model::Region& region, const attributes::Defaults& defaults) : region_(region) {
+ElementLibrary::ElementLibrary(model::Region& region, const attributes::Defaults& defaults,
+                               elements::ElementCatalogue catalogue)
+    : region_(region), catalogue_(std::move(catalogue)) {
   const auto material = [&](const char* name) {
     return static_cast<std::uint8_t>(std::max(defaults.material(name), 0));
   };
@@ -158,7 +160,7 @@ void ElementLibrary::add_request(const grammar::ElementRequest& order, bool keep
 std::uint32_t ElementLibrary::take(std::string& error) {
   auto made = made_.find(key_);
   if (made == made_.end()) {
-    auto fitted = elements::make_fitting_element(kind_, width_, height_, parameters_);
+    auto fitted = catalogue_.make_fitting(kind_, width_, height_, parameters_);
     Made entry;
     if (fitted) {
       model::Element& element = fitted->element;

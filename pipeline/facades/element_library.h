@@ -12,7 +12,7 @@
 
 #include "pipeline/attributes/defaults.h"
 #include "pipeline/model/region.h"
-#include "styles/elements/make_element.h"
+#include "styles/elements/element_catalogue.h"
 #include "styles/grammar/evaluation/derive.h"
 
 namespace blockrand::facades {
@@ -23,7 +23,7 @@ using PartMaterials = std::array<model::PartMaterial, model::kElementPartCount>;
 class ElementLibrary {
  public:
   /// \param region  gets the elements; must outlive this
-  ElementLibrary(model::Region& region, const attributes::Defaults& defaults);
+  ElementLibrary(model::Region& region, const attributes::Defaults& defaults, elements::ElementCatalogue catalogue);
 
   static constexpr std::uint32_t kNone = 0xffffffff;
   /// Sizes are whole centimetres, rounded down, so that equal elements are one.
@@ -36,7 +36,7 @@ class ElementLibrary {
 
   /// Begins a request.
   void ask(std::string_view kind, double width, double height, const PartMaterials& materials);
-  /// A parameter of elements::make_element; the last one of a name that is given twice is an error there.
+  /// A parameter of elements::ElementCatalogue::make; the last one of a name that is given twice is an error there.
   void add(const std::string& name, std::string_view word);
   void add(const std::string& name, double number);
   /// All parameters of an order in a rule file: pairs of name and value after the kind; "PART_colour" colours a part.
@@ -71,6 +71,7 @@ class ElementLibrary {
   void add_key(double value, double steps);
 
   model::Region& region_;
+  elements::ElementCatalogue catalogue_;
   std::uint8_t plaster_ = 0, wood_ = 0, glass_ = 0, metal_ = 0;
   // The request: its key is what was asked for, byte by byte.
   std::string kind_, key_;

@@ -14,7 +14,6 @@
 #include "pipeline/facades/leaf_polygons.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/model/vector.h"
-#include "styles/elements/make_element.h"
 #include "styles/grammar/shapes/mesh_triangles.h"
 #include "styles/grammar/shapes/scope.h"
 
@@ -134,7 +133,7 @@ bool FacadeBuilder::order_on_footprint(const grammar::Leaf& leaf, const grammar:
     return false;
   }
   const std::string& name = std::get<std::string>(order.arguments[0]);
-  const elements::ElementKind* kind = elements::find_element_kind(name);
+  const elements::ElementKind* kind = grammars_.elements().find(name);
   const bool run = kind && kind->width.measures == "run";
   const Point2 along = Point2{right.x, right.y} * (1 / std::hypot(right.x, right.y));
   const grammar::Vector3 depth = out * leaf.shape.size.z;  // before bodies

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "pipeline/facades/facade_builder.h"
-#include "styles/elements/make_element.h"
 #include "styles/grammar/shapes/scope.h"
 
 namespace blockrand::facades {
@@ -33,7 +32,7 @@ void FacadeBuilder::take(const FacadeContext& context, const grammar::Leaf& leaf
   const grammar::Frame frame = grammar::scope_in_object(leaf.shape);
   const double left = frame.origin.x, low = frame.origin.y, width = leaf.shape.size.x, height = leaf.shape.size.y;
   if (!(ElementLibrary::size(width) > 0 && ElementLibrary::size(height) > 0)) return;
-  const elements::ElementKind* kind = elements::find_element_kind(std::get<std::string>(order.arguments[0]));
+  const elements::ElementKind* kind = grammars_.elements().find(std::get<std::string>(order.arguments[0]));
   const bool run = kind && kind->width.measures == "run";
   std::vector<std::pair<double, double>>& pieces = pieces_;
   pieces.assign({{left, left + width}});

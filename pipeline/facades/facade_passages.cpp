@@ -6,7 +6,6 @@
 #include "pipeline/facades/facade_builder.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/triangulate.h"
-#include "styles/elements/make_element.h"
 
 namespace blockrand::facades {
 
@@ -68,7 +67,7 @@ void FacadeBuilder::close_portals() {
     if (open && m.front != model::WallSegmentKind::street) continue;
     const bool cart = m.right - m.left >= kLeastGate;
     const std::string_view name = open ? "surround" : cart ? "carriage_gateway" : "house_door";
-    const elements::ElementKind& kind = *elements::find_element_kind(name);
+    const elements::ElementKind& kind = *grammars_.elements().find(name);
     const double width = std::min(ElementLibrary::size(m.right - m.left), kind.width.most);
     const double height = std::min(ElementLibrary::size(m.high - m.low), kind.height.most);
     if (width < kind.width.least || height < kind.height.least) continue;

@@ -170,7 +170,7 @@ void build_facades(model::Region& region, const GrammarLibrary& grammars, const 
   std::vector<Stretch> stretches(begins.size() - 1);
   base::share(stretches.size(), [&](std::size_t i) {
     Stretch& stretch = stretches[i];
-    stretch.library = std::make_unique<ElementLibrary>(stretch.made, defaults);
+    stretch.library = std::make_unique<ElementLibrary>(stretch.made, defaults, grammars.elements());
     FacadeBuilder builder(stretch.made.report, *stretch.library, grammars, defaults, options, region.extract);
     for (std::size_t b = begins[i]; b < begins[i + 1]; ++b) {
       model::Building& building = region.buildings[b];
@@ -185,7 +185,7 @@ void build_facades(model::Region& region, const GrammarLibrary& grammars, const 
         builder.build(building, building.parts[p], masses ? masses->find({static_cast<std::uint32_t>(b), p}) : nullptr);
     }
   });
-  ElementLibrary library(region, defaults);
+  ElementLibrary library(region, defaults, grammars.elements());
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     region.report.append(std::move(stretches[i].made.report));
     const std::vector<std::uint32_t> numbers = library.take_over(*stretches[i].library);

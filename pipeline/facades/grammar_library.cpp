@@ -14,7 +14,6 @@
 #include "pipeline/facades/facade_context.h"
 #include "pipeline/facades/rule_geometry.h"
 #include "pipeline/model/element.h"
-#include "styles/elements/make_element.h"
 
 namespace blockrand::facades {
 namespace {
@@ -50,7 +49,7 @@ bool begins_on_lot(const grammar::Program& program) {
 
 }  // namespace
 
-std::vector<grammar::ExtensionOperation> extension_operations() {
+std::vector<grammar::ExtensionOperation> extension_operations(const elements::ElementCatalogue& catalogue) {
   // The first three take all kinds of their class; the others those that are named after what they make
   // (docs/rule_language.md §7.1).
   struct Named {
@@ -68,7 +67,7 @@ std::vector<grammar::ExtensionOperation> extension_operations() {
   std::vector<grammar::ExtensionOperation> out(named.size());
   for (std::size_t i = 0; i < named.size(); ++i) out[i].name = named[i].name;
   std::vector<std::set<std::string>> parameters(named.size());
-  for (const elements::ElementKind& kind : elements::element_kinds()) {
+  for (const elements::ElementKind& kind : catalogue.kinds()) {
     const std::size_t which = kind.semantic == model::ElementClass::window ? 0
                               : kind.semantic == model::ElementClass::door ? 1
                                                                            : 2;
@@ -96,13 +95,15 @@ struct GrammarLibrary::File {
   std::optional<grammar::Deriver> deriver;
 };
 
-GrammarLibrary::GrammarLibrary(const std::string& folder, std::span<const PresetGrammar> presets) {
+GrammarLibrary::GrammarLibrary(const std::string& folder, std::span<const PresetGrammar> presets,
+                               elements::ElementCatalogue elements)
+    : elements_(std::move(elements)) {
   grammar::LoadOptions options;
   options.roots = {folder};
   options.read = read_file;
   options.list = list_folder;
   grammar::CheckOptions check_options;
-  check_options.extensions = extension_operations();
+  check_options.extensions = extension_operations(elements_);
   for (const ContextAttribute& attribute : context_attributes()) check_options.context.emplace_back(attribute.name);
   const auto file_of = [&](const std::string& name, const std::string& beside) {
     std::filesystem::path place = std::filesystem::path(folder) / name;
@@ -206,20 +207,24 @@ std::vector<std::string> unread_parameters(const districts::RuleSets& book, cons
   return out;
 }
 
-GrammarLibrary read_grammars(const std::string& configs, std::span<const districts::Preset> presets) {
+GrammarLibrary read_grammars(const std::string& configs, std::span<const districts::Preset> presets,
+                             const elements::ModelReader& reader) {
   const std::filesystem::path folder = std::filesystem::path(configs) / "grammars";
   // A folder of rules of one's own may do without.
   const bool usual = std::filesystem::exists(folder / kUsualRoofRules);
   std::vector<PresetGrammar> grammars;
+  std::vector<std::string> folders{configs};
   for (const districts::Preset& preset : presets) {
     if (preset.grammar.empty()) continue;
     std::filesystem::path declared = std::filesystem::path(preset.declared_in).parent_path();
     if (!preset.declared_in.empty() && declared.empty()) declared = ".";
+    if (!declared.empty() && std::ranges::find(folders, declared.string()) == folders.end())
+      folders.push_back(declared.string());
     grammars.push_back({preset.name, preset.grammar, preset.attributes,
                         preset.roof_grammar.value_or(usual ? kUsualRoofRules : ""), declared.string(),
                         preset.on_footprint});
   }
-  return {folder.string(), grammars};
+  return {folder.string(), grammars, elements::read_element_catalogue(folders, reader)};
 }
 
 }  // namespace blockrand::facades

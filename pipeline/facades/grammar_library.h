@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "styles/districts/rule_set.h"
+#include "styles/elements/element_catalogue.h"
 #include "styles/grammar/evaluation/derive.h"
 #include "styles/grammar/language/check.h"
 
@@ -21,11 +22,11 @@ namespace blockrand::facades {
 inline constexpr std::string_view kPaintOperation = "paint";
 
 /// What our own operations are called in rule files: `blockrand.window("double_casement", "head", "segmental")`. The
-/// first argument is a kind of elements::element_kinds(), pairs of parameter and value follow: those of the kind, and
+/// first argument is a kind of the catalogue, pairs of parameter and value follow: those of the kind, and
 /// colours of parts ("frame_colour", "#f6f6f6"; see model::ElementPart).
 ///
 /// `window` and `door` stand in an opening of the shape's size; `element` stands on the wall.
-std::vector<grammar::ExtensionOperation> extension_operations();
+std::vector<grammar::ExtensionOperation> extension_operations(const elements::ElementCatalogue& catalogue);
 
 /// Which rule file a preset runs, and with which attribute values.
 struct PresetGrammar {
@@ -53,10 +54,13 @@ class GrammarLibrary {
 
   /// Reads each file once. \param folder  of the rule files; imports are looked for there as well
   /// \throws base::InputError  with all errors of the first file that has some, each with file, line and column
-  GrammarLibrary(const std::string& folder, std::span<const PresetGrammar> presets);
+  GrammarLibrary(const std::string& folder, std::span<const PresetGrammar> presets,
+                 elements::ElementCatalogue elements);
   ~GrammarLibrary();
   GrammarLibrary(GrammarLibrary&&) noexcept;
 
+  /// The kinds that rules may order.
+  const elements::ElementCatalogue& elements() const { return elements_; }
   /// Null when the preset has no grammar.
   const Entry* find(std::string_view preset) const;
   /// Whether a rule file of the preset has an attribute of that name, or one of any preset's does.
@@ -71,14 +75,18 @@ class GrammarLibrary {
 
  private:
   struct File;
+  elements::ElementCatalogue elements_;
   std::vector<std::unique_ptr<File>> files_;
   std::vector<Entry> entries_;               ///< by name
   std::set<std::string, std::less<>> read_;  ///< names of attributes of all files, as parameters name them
 };
 
-/// The rule files of a rule book's presets, from configs/grammars.
+/// The rule files of a rule book's presets, from configs/grammars, with the elements and profiles of configs and of the folders in
+/// which rule sets declare presets.
+/// \param reader  of models that element files name
 /// \throws base::InputError  with the errors of a file
-GrammarLibrary read_grammars(const std::string& configs, std::span<const districts::Preset> presets);
+GrammarLibrary read_grammars(const std::string& configs, std::span<const districts::Preset> presets,
+                             const elements::ModelReader& reader);
 
 /// Parameters of district rules and of presets that nothing reads, one sentence each with its place: PARAMETER_UNREAD.
 std::vector<std::string> unread_parameters(const districts::RuleSets& book, const GrammarLibrary& grammars);

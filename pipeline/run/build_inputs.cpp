@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "importers/imagery/image_files.h"
+#include "importers/reference/triangle_model.h"
 #include "pipeline/base/sha256.h"
 
 namespace blockrand::run {
@@ -51,7 +52,9 @@ BuildInputs::BuildInputs(const BuildOptions& options)
       tile(choose_tile(options)),
       tables(classify::Tables::read(options.configs)),
       rules(attributes::read_rule_sets(options.configs, options.districts)) {
-  if (options.lod >= 3) grammars.emplace(facades::read_grammars(options.configs, rules.book.presets));
+  if (options.lod >= 3)
+    grammars.emplace(
+        facades::read_grammars(options.configs, rules.book.presets, importers::reference::read_triangle_model));
   overrides = open_overrides(options.overrides, defaults, rules.book);
   if (options.lod >= 2) landmarks = read_landmarks(overrides);
 }
@@ -76,6 +79,12 @@ std::vector<InputFile> input_files(const BuildOptions& options, const BuildInput
   if (inputs.grammars)
     for (const std::string& path : inputs.grammars->files())
       configs.emplace_back("grammars/" + std::filesystem::path(path).filename().string(), path);
+  // profiles/… and elements/…, of configs or beside a rule set.
+  if (inputs.grammars)
+    for (const std::string& path : inputs.grammars->elements().files()) {
+      const std::filesystem::path file(path);
+      configs.emplace_back((file.parent_path().filename() / file.filename()).generic_string(), path);
+    }
   for (const auto& [name, path] : configs) {
     files.push_back(input_file("config", path));
     files.back().path = name;

@@ -256,7 +256,7 @@ base::OptionTable<B> how_it_runs() {
             .key = "configs",
             .argument = "DIR",
             .type = OptionType::folder,
-            .commands = kBuild | kInfo | kDistricts | kUpdate,
+            .commands = kBuild | kInfo | kDistricts | kUpdate | kGrammar,
             .help = "folder with defaults/ and materials/; else the configs/ that came with the program",
             .record = OptionRecord::none},
            &B::configs),

@@ -23,6 +23,7 @@
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/masses/envelope.h"
 #include "styles/roofs/roof.h"
+#include "tests/unit/facades/house.h"
 #include "tests/unit/geometry/shapes.h"
 
 namespace blockrand::facades {
@@ -107,7 +108,7 @@ const GrammarLibrary& shipped() {
       {"slab", "slab.cga", {}},
       {"plain", "plain.cga", {}},
       {"bilke", "bilke/tenement.cga", {}}};
-  static const GrammarLibrary book((kSource / "configs/grammars").string(), presets);
+  static const GrammarLibrary book((kSource / "configs/grammars").string(), presets, test::elements_of_configs());
   return book;
 }
 
@@ -702,7 +703,7 @@ GrammarLibrary own_book(const std::string& rules) {
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "own.cga") << "version \"2025.1\"\n@StartRule\n" << rules;
   const std::vector<PresetGrammar> presets{{"own", "own.cga", {}}};
-  GrammarLibrary book(folder.string(), presets);
+  GrammarLibrary book(folder.string(), presets, test::elements_of_configs());
   std::filesystem::remove_all(folder);
   return book;
 }
@@ -860,12 +861,12 @@ TEST(GrammarLibraries, MistakesAreLocated) {
   std::ofstream(folder / "bad.cga") << "Lot -->\n  split(x){ ~1 : A | \n";
   const std::vector<PresetGrammar> bad{{"p", "bad.cga", {}}}, none{{"p", "nowhere.cga", {}}};
   try {
-    GrammarLibrary book(folder.string(), bad);
+    GrammarLibrary book(folder.string(), bad, test::elements_of_configs());
     ADD_FAILURE();
   } catch (const base::InputError& e) {
     EXPECT_THAT(e.what(), testing::ContainsRegex("bad.cga:[0-9]+:[0-9]+"));
   }
-  EXPECT_THROW(GrammarLibrary(folder.string(), none), base::InputError);
+  EXPECT_THROW(GrammarLibrary(folder.string(), none, test::elements_of_configs()), base::InputError);
   std::filesystem::remove_all(folder);
 }
 

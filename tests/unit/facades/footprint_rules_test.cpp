@@ -168,7 +168,7 @@ Built built(const std::string& file, const std::vector<std::pair<std::string, st
             const std::filesystem::path& folder = std::filesystem::path(BLOCKRAND_SOURCE_DIR) /
                                                   "tests/golden/rule_files/independent") {
   const std::vector<PresetGrammar> presets{{"own", file, attributes}};
-  const GrammarLibrary grammars(folder.string(), presets);
+  const GrammarLibrary grammars(folder.string(), presets, test::elements_of_configs());
   Built out;
   out.region.materials.resize(defaults().materials.size());
   Scene s = scene();

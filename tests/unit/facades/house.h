@@ -11,6 +11,7 @@
 #include "pipeline/masses/built_mass.h"
 #include "pipeline/masses/envelope.h"
 #include "pipeline/model/region.h"
+#include "styles/elements/element_catalogue.h"
 #include "styles/roofs/roof.h"
 #include "tests/unit/geometry/shapes.h"
 
@@ -23,6 +24,13 @@ using testing_shapes::polygon;
 inline const attributes::Defaults& defaults() {
   static const attributes::Defaults d = attributes::read_defaults(std::string(BLOCKRAND_SOURCE_DIR) + "/configs");
   return d;
+}
+
+/// Those of the shipped configs.
+inline const elements::ElementCatalogue& elements_of_configs() {
+  static const elements::ElementCatalogue catalogue =
+      elements::read_element_catalogue(std::vector<std::string>{std::string(BLOCKRAND_SOURCE_DIR) + "/configs"});
+  return catalogue;
 }
 
 struct House {

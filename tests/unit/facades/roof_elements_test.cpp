@@ -213,7 +213,7 @@ TEST(RoofRules, EveryDormerHasItsWindowAlsoOnMansards) {
          "gruenderzeit.cga",
          {{"dormer_share", "1"}, {"dormer_kind", c.kind}, {"cross_gable_share", "0"}},
          "roofscape.cga"}};
-    const GrammarLibrary book(folder.string(), presets);
+    const GrammarLibrary book(folder.string(), presets, test::elements_of_configs());
     masses::BuiltMasses built(tile.built);
     build_facades(tile.region, book, test::defaults(), {}, &built);
     const model::BuildingPart& part = tile.region.buildings[0].parts[0];
@@ -231,7 +231,8 @@ TEST(RoofRules, EveryDormerHasItsWindowAlsoOnMansards) {
 TEST(RoofRules, PresetsWithoutRulesForRoofsLeaveThemBare) {
   Tile tile = labelled(steep_house());
   const std::vector<PresetGrammar> presets{{"p", "gruenderzeit.cga", {{"dormer_share", "1"}}}};
-  const GrammarLibrary book((std::filesystem::path(BLOCKRAND_SOURCE_DIR) / "configs/grammars").string(), presets);
+  const GrammarLibrary book((std::filesystem::path(BLOCKRAND_SOURCE_DIR) / "configs/grammars").string(), presets,
+                            test::elements_of_configs());
   masses::BuiltMasses built(tile.built);
   build_facades(tile.region, book, test::defaults(), {}, &built);
   EXPECT_TRUE(tile.region.buildings[0].parts[0].lod3.roof_elements.empty());
@@ -247,7 +248,8 @@ TEST(RoofRules, AGableToTheStreetGetsItsOrnamentAndWindows) {
     Tile tile = labelled(h);
     const std::vector<PresetGrammar> presets{
         {"p", "plain.cga", {{"gable", form}, {"dormer_share", "0"}, {"gable_window_share", "1"}}, "roofscape.cga"}};
-    const GrammarLibrary book((std::filesystem::path(BLOCKRAND_SOURCE_DIR) / "configs/grammars").string(), presets);
+    const GrammarLibrary book((std::filesystem::path(BLOCKRAND_SOURCE_DIR) / "configs/grammars").string(), presets,
+                              test::elements_of_configs());
     masses::BuiltMasses built(tile.built);
     build_facades(tile.region, book, test::defaults(), {}, &built);
     const bool gable_to_street = built.find({0, 0})->roof.wall_tops[0].size() > 2;
