@@ -29,6 +29,8 @@ constexpr double kSomeStreet = 10;
 /// Of a face's unit normal: flatter ones are roofs or undersides (about 6 degrees off the vertical).
 constexpr double kUpright = 0.1;
 constexpr double kSmallest = 1e-6;  ///< m2, of a face
+/// m: rings nearer to themselves than two grid steps are no rings (check_solid.h).
+constexpr double kNarrow = 3.0 / model::kGridStepsPerMetre;
 
 /// The edge of a ring that a wall stands on; none where no edge is near.
 std::optional<std::size_t> edge_under(const std::vector<Point2>& ring, Point2 middle) {
@@ -46,6 +48,25 @@ Point3 normal_of(const std::vector<Point3>& polygon) {
     sum = sum + model::cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
   }
   return sum;
+}
+
+/// Takes corners away that lie nearer to a side of theirs than kNarrow: the grid moved them there.
+void widen(std::vector<Point3>& polygon) {
+  while (polygon.size() >= 3) {
+    const std::size_t n = polygon.size();
+    std::optional<std::size_t> narrow;
+    double least = kNarrow;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t e = 0; e < n; ++e) {
+        if (e == i || (e + 1) % n == i) continue;
+        const Point3 a = polygon[e], along = polygon[(e + 1) % n] - a, to = polygon[i] - a;
+        const double length = model::dot(along, along);
+        const double t = length > 0 ? std::clamp(model::dot(to, along) / length, 0.0, 1.0) : 0;
+        if (const double d = model::length(to - along * t); d < least) least = d, narrow = i;
+      }
+    if (!narrow) return;
+    polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(*narrow));
+  }
 }
 
 }  // namespace
@@ -136,6 +157,7 @@ void RuleSurfaces::add(const std::string& rule, std::vector<Point3> polygon, con
   for (const Point3& p : polygon)
     if (const Point3 at = model::snap(p); points.empty() || !(points.back() == at)) points.push_back(at);
   while (points.size() > 1 && points.front() == points.back()) points.pop_back();
+  widen(points);
   if (points.size() < 3 || model::length(normal_of(points)) < kSmallest) return;  // thinner than the grid
   const auto [at, is_new] = number_.try_emplace(rule, rules_.size());
   if (is_new) rules_.push_back(rule);

@@ -85,7 +85,7 @@ class Landmarks(BuildTest):
                 db = sqlite3.connect(os.path.join(out, 'buildings.gpkg'))
                 rows = {r[0]: r[1:] for r in db.execute('select id, origin, replaced_by, height, height_source, parts, fallbacks from buildings')}
                 told = 'tower.glb; A. Mason; CC BY 4.0; https://example.org/tower.glb'
-                self.assertEqual(rows[first], ('replaced', told, 20.0, 'override', 1, ''))
+                self.assertEqual(rows[first], ('replaced', told, 20.0, 'override', 1, None))
                 self.assertEqual(rows[second][0], 'replaced')
                 self.assertAlmostEqual(rows[second][2], 11.0)  # ten metres and one of air
                 self.assertEqual(rows[second][5], 'MODEL_NOT_CLOSED')

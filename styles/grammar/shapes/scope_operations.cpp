@@ -138,11 +138,12 @@ Result run_center(Shape& shape, const OperationInput& input, Arguments arguments
   constexpr std::array<std::string_view, 7> kKnown{"x", "y", "z", "xy", "xz", "yz", "xyz"};
   if (std::find(kKnown.begin(), kKnown.end(), axes) == kKnown.end())
     return failure(unknown_word(axes, "x, y, z, xy, xz, yz, xyz"));
-  const Frame base = scope_in_object(input.base);
-  const Vector3 way = turn_back(base, scope_middle(input.base) - scope_middle(shape));
+  // Along the axes of the scope as it is now: files stand chimneys on slopes by alignScopeToAxes(y) s(…) center(xz).
+  const Frame now = scope_in_object(shape);
+  const Vector3 way = turn_back(now, scope_middle(input.base) - scope_middle(shape));
   Vector3 chosen;
   for (const char axis : axes) set_component(chosen, axis - 'x', component(way, axis - 'x'));
-  shape.scope.origin = shape.scope.origin + turn_back(shape.pivot, turn(base, chosen));
+  shape.scope.origin = shape.scope.origin + turn_back(shape.pivot, turn(now, chosen));
   return {};
 }
 

@@ -153,7 +153,14 @@ TEST(RuleSurfaces, FacesBetweenBodiesAreHidden) {
 TEST(RuleSurfaces, WhatIsThinnerThanTheGridShowsNothing) {
   RuleSurfaces surfaces;
   surfaces.add("Hair", {{0, 0, 0}, {1, 0, 0}, {1, 0, 1e-5}, {0, 0, 1e-5}}, kLook, false);
+  // Wider than the grid, and still no ring: two steps are needed.
+  surfaces.add("Slit", {{0, 0, 0}, {1, 0, 0}, {1, 0, 0.0015}, {0, 0, 0.0015}}, kLook, false);
   EXPECT_TRUE(surfaces.empty());
+  // A corner a step off the next one goes; the face stays.
+  surfaces.add("Wall", {{0, 0, 0}, {4, 0, 0}, {4, 0, 3}, {0.001, 0, 3}, {0, 0, 2.999}}, kLook, false);
+  const RuleSurfaces::Made made = surfaces.take(0);
+  ASSERT_EQ(made.surfaces.faces.size(), 1u);
+  EXPECT_EQ(made.surfaces.vertices.size(), 4u);
 }
 
 // ---- the whole way: a rule file as the preset of a house

@@ -353,6 +353,14 @@ TEST(Conformance, Row35CenterAndPivot) {
   EXPECT_EQ(size_text(leaf(centred, "X.")), "8 0 12");
   EXPECT_NEAR(leaf(centred, "X.").scope.origin.x, 1, kTolerance);
   EXPECT_NEAR(leaf(centred, "X.").scope.origin.z, -16, kTolerance);
+  // Along the axes that the scope has now: a chimney stands upright in the middle of a face that looks up.
+  const auto chimney =
+      derive_text("Lot --> extrude(9) comp(f){ top : alignScopeToAxes(y) s(1,3,1) center(xz) primitiveCube() X. }",
+                  rectangle(10, 20));
+  const Frame at = scope_in_world(leaf(chimney, "X."));
+  EXPECT_NEAR(at.origin.x, 4.5, kTolerance);
+  EXPECT_NEAR(at.origin.y, 9, kTolerance);
+  EXPECT_NEAR(at.origin.z, -9.5, kTolerance);
   const auto turned = derive_text("Lot --> extrude(5) setPivot(xyz,1) X.", rectangle(10, 20));
   const Shape& s = leaf(turned, "X.");
   EXPECT_EQ(size_text(s), "20 5 10");
