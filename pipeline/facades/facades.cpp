@@ -24,7 +24,7 @@ using model::IssueCode;
 using model::Point2;
 
 void FacadeBuilder::build(model::Building& building, BuildingPart& part, masses::BuiltMass* mass) {
-  if (part.lod < 2 || part.lod2.empty() || !part.lod2.closed || part.canopy) return;
+  if (building.replaced || part.lod < 2 || part.lod2.empty() || part.canopy) return;
   // An order for a part alone gives it a front of its own.
   const GrammarLibrary::Entry* grammar = grammars_.find(part.attributes.preset.value);
   if (!grammar) return;

@@ -5,7 +5,7 @@ import shutil
 import sqlite3
 import struct
 
-from blockrand_run import SAMPLE, BuildTest, blockrand, extract, main, read_json
+from blockrand_run import SAMPLE, BuildTest, blockrand, extract, main, read_json, sha256
 
 BOX = ((0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1), (0, 1, 0), (1, 1, 0), (1, 1, 1), (0, 1, 1))
 # Counter-clockwise from outside, y up: bottom, top, and the four sides.
@@ -80,7 +80,7 @@ class Landmarks(BuildTest):
             orders = self.place('models.toml', ORDER.format(id=first, file='tower.glb', more='turn = 30') +
                                 ORDER.format(id=second, file='open.glb', more='scale = 0.5\nlift = 1'))
             for lod in ('2', '3'):
-                out = self.build(data, 'models' + lod, '--lod', lod, '--formats', '3dtiles,citygml,cityjson,gpkg', '--overrides', orders)
+                out = self.build(data, os.path.basename(data) + lod, '--lod', lod, '--formats', '3dtiles,citygml,cityjson,gpkg', '--overrides', orders)
                 self.valid(out)
                 db = sqlite3.connect(os.path.join(out, 'buildings.gpkg'))
                 rows = {r[0]: r[1:] for r in db.execute('select id, origin, replaced_by, height, height_source, parts, fallbacks from buildings')}
@@ -110,7 +110,15 @@ class Landmarks(BuildTest):
                 self.assertIn(told, told_model)
                 record = read_json(out, 'build.json')
                 self.assertEqual({i['path'] for i in record['inputs'] if i['role'] == 'model'}, {'tower.glb', 'open.glb'})
-                again = self.build(data, 'again', '--lod', lod, '--formats', '3dtiles,citygml,cityjson,gpkg', '--overrides', orders, '-j', '1')
+                # A tile alone is that of the whole.
+                tile = db.execute('select tile from buildings where id = ?', (first,)).fetchone()[0]
+                alone = self.build(data, 'alone', '--lod', lod, '--formats', '3dtiles,citygml,cityjson', '--overrides', orders, '--tile', tile,
+                                   '--pinned', os.path.join(out, 'build.json'))
+                name = tile.replace('/', '_')
+                for file in (os.path.join('citygml', name + '.gml'), os.path.join('cityjson', name + '.city.jsonl'), os.path.join('tiles', tile + '.glb')):
+                    self.assertEqual(sha256(os.path.join(alone, file)), sha256(os.path.join(out, file)), file)
+                shutil.rmtree(alone)
+                again = self.build(data, 'same', '--lod', lod, '--formats', '3dtiles,citygml,cityjson,gpkg', '--overrides', orders, '-j', '1')
                 self.same_files(out, again)
                 shutil.rmtree(again)
 

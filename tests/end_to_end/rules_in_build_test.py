@@ -1,6 +1,7 @@
 """Rule files of others as presets, and that what a user orders of houses, parts and storeys happens or is told."""
 import json
 import os
+import re
 import shutil
 import sqlite3
 import unittest
@@ -111,6 +112,59 @@ class RulesInBuild(BuildTest):
         run = blockrand('districts', 'check', rules)
         self.assertEqual(run.code, 2, run)
         self.assertRegex(run.err, 'initial_shape.*wall or footprint')
+
+    def test_elements_and_profiles_are_data(self):
+        """An element file and a profile beside a rule set, and those of configs: used, checked, and known to kept work."""
+        folder, configs, cache = self.path('rules'), self.path('own_configs'), self.path('cache')
+        shutil.copytree(os.path.join(SOURCE, 'configs'), configs)
+        for name in ('elements', 'profiles'):
+            os.makedirs(os.path.join(folder, name), exist_ok=True)
+        shutil.copy(os.path.join(configs, 'elements', 'louvre.toml'), os.path.join(folder, 'elements', 'slatted.toml'))
+        shutil.copy(os.path.join(configs, 'profiles', 'cyma.toml'), os.path.join(folder, 'profiles', 'ogee.toml'))
+        with open(os.path.join(folder, 'own.cga'), 'w', encoding='utf-8') as f:
+            f.write('@StartRule\nFacade --> split(y){ ~1 : Field | 0.3 : blockrand.cornice("string_course", "profile", "ogee") }\n'
+                    'Field --> split(x){ ~1 : Wall. | 1.2 : Axis | ~1 : Wall. }\n'
+                    'Axis --> split(y){ 1 : Wall. | 1.6 : blockrand.window("slatted", "spacing", 0.1) | ~1 : Wall. }\n')
+        rules = os.path.join(folder, 'set.toml')
+        with open(rules, 'w', encoding='utf-8') as f:
+            f.write('title = "own forms"\n[presets.own]\ndescription = "own"\nclass = "other"\ngrammar = "own.cga"\n'
+                    '[[rule]]\nname = "all"\nlevel = "city"\npreset = { own = 1 }\n' + PRIOR)
+        street = self.place('plain.osm', re.sub(r' <tag k="blockrand[^>]*>', '', re.sub(r'<way id="[23]".*?</way>', '', open(self.street(), encoding='utf-8').read(), flags=re.S)))
+        run = blockrand('grammar', 'check', os.path.join(folder, 'own.cga'))
+        self.assertEqual(run.code, 0, run)
+        self.assertNotIn('warning', run.err)
+        options = ('--lod', '3', '--districts', rules, '--configs', configs)
+        out = self.build(street, 'forms', *options, '--cache', cache)
+        self.assertEqual(codes(out, 'GRAMMAR_ERROR'), [])
+        self.valid(out)
+        city = ''.join(open(os.path.join(out, 'citygml', name), encoding='utf-8').read() for name in os.listdir(os.path.join(out, 'citygml')))
+        self.assertIn('slatted', json.dumps(read_json(out, 'build.json')['inputs']))
+        self.assertIn('bldg:Window', city)
+        before = sha256(os.path.join(out, 'citygml', os.listdir(os.path.join(out, 'citygml'))[0]))
+        # A changed profile is a changed tile.
+        ogee = os.path.join(folder, 'profiles', 'ogee.toml')
+        with open(ogee, encoding='utf-8') as f:
+            good = f.read()
+        with open(ogee, 'w', encoding='utf-8') as f:
+            f.write(good.replace('line, abs, 0, 2.5;', 'line, abs, 0, 4.5;'))
+        changed = self.build(street, 'changed', *options, '--cache', cache)
+        self.same_files(changed, self.build(street, 'changed.clean', *options))
+        self.assertNotEqual(before, sha256(os.path.join(changed, 'citygml', os.listdir(os.path.join(changed, 'citygml'))[0])))
+        # A broken one, beside the set or in configs, is an error before anything is written; so is a broken element file.
+        for path, text in ((ogee, 'meaning = "x"\nheight = [1, 2, 3]\nprogram = "line"\n'),
+                           (os.path.join(configs, 'profiles', 'casing.toml'), 'meaning = "x"\n'),
+                           (os.path.join(folder, 'elements', 'slatted.toml'), 'meaning = "x"\nclass = "window"\nwidth = [1, 2, 3]\nheight = [1, 2, 3]\n')):
+            with open(path, encoding='utf-8') as f:
+                good = f.read()
+            with open(path, 'w', encoding='utf-8') as f:
+                f.write(text)
+            run = blockrand('build', street, '-o', self.path('broken'), *options)
+            self.assertEqual(run.code, 2, (path, run))
+            self.assertIn(os.path.basename(path), run.err)
+            self.assertFalse(os.path.exists(self.path('broken')))
+            self.assertEqual(blockrand('districts', 'check', rules, '--configs', configs).code, 2, path)
+            with open(path, 'w', encoding='utf-8') as f:
+                f.write(good)
 
     def test_what_nothing_reads_is_told(self):
         rules = self.rule_set(['brick_bays'], '[[rule]]\nname = "typo"\nlevel = "city"\nparameters = { ornamnet = 0.7 }\n')
