@@ -208,6 +208,7 @@ ReferenceModel read_gltf_axes(const std::string& path) {
   model.path = path;
   NoteLog notes;
   GltfFile file(path, notes);
+  file.refuse_files_beside();
   GltfScene(model, notes).add(file, path, kIdentity);
   model.format = "glTF 2.0";
   model.version = "2.0";

@@ -273,6 +273,12 @@ void GltfFile::check_extensions(NoteLog& notes) const {
     }
 }
 
+void GltfFile::refuse_files_beside() const {
+  for (const Json& buffer : member(json_, "buffers"))
+    if (const std::string uri = text(member(buffer, "uri")); !uri.empty() && !uri.starts_with("data:"))
+      throw base::InputError(path_, "", "keeps its geometry in another file, " + uri, "Pack it into one .glb");
+}
+
 void GltfFile::read_buffers(std::string binary) {
   bool first = true;
   for (const Json& buffer : member(json_, "buffers")) {

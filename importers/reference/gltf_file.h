@@ -35,6 +35,8 @@ class GltfFile {
   GltfFile(const std::string& path, NoteLog& notes);
 
   const Json& json() const { return json_; }
+  /// \throws base::InputError  where it keeps geometry in files beside it: whoever keeps work by a file's hash cannot see those
+  void refuse_files_beside() const;
   std::uint64_t bytes() const { return bytes_; }  ///< on disk, with its buffers
 
   /// Nothing (and a note) where the number leads nowhere.

@@ -18,7 +18,7 @@ constexpr std::size_t kMostNodes = 100'000;
 
 class ModelReading {
  public:
-  explicit ModelReading(const std::string& path) : path_(path), file_(path, notes_) {}
+  explicit ModelReading(const std::string& path) : path_(path), file_(path, notes_) { file_.refuse_files_beside(); }
 
   model::TriangleModel read() {
     const Json& scenes = member(file_.json(), "scenes");

@@ -76,6 +76,9 @@ struct OverrideNames {
 ///                           range, unknown names (with the nearest), values that contradict each other
 Overrides read_overrides(const std::string& path, const Defaults& defaults, const OverrideNames& names);
 
+/// The files of the models that a file of overrides names and that are there; none where it cannot be read: read_overrides() tells why.
+std::vector<std::string> models_of(const std::string& overrides);
+
 /// Gives the orders to the extract's objects as if they were tags, before any stage looks at them: what hangs together
 /// (storeys, heights, roof) then follows as it follows from tags. Tags that an order contradicts are taken away: a
 /// height for a storey height, other measures of the roof for one of them, and of heights, undersides, roofs and

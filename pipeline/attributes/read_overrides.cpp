@@ -72,6 +72,12 @@ void check_word(const TomlTable& table, std::string_view key, const std::string&
     table.fail(key, "is no value of that tag: '" + value + "'", "Write lower-case letters, digits and _.");
 }
 
+std::string path_beside(const std::string& file, const std::string& named) {
+  std::filesystem::path path(named);
+  if (path.is_relative()) path = std::filesystem::path(file).parent_path() / path;
+  return path.string();
+}
+
 class Reader {
  public:
   Reader(std::string file, const Defaults& defaults, const OverrideNames& names) : defaults_(defaults), names_(names) {
@@ -135,9 +141,12 @@ class Reader {
       if (!(object == building))
         table.fail("model", "replaces whole buildings", "Write it below [" + building.text() + "].");
       entry.model = read_replacement(*model);
-      for (const char* unread : {"preset", "roof_shape", "roof_height", "roof_pitch", "roof_direction"})
+      for (const char* unread :
+           {"preset", "height", "roof_shape", "roof_height", "roof_pitch", "roof_direction", "eaves_height"})
         if (entry.values.contains(unread))
           table.fail(unread, "is read by nothing: a model replaces the building", "Leave one of the two out.");
+      if (entry.side_pitches.any())
+        table.fail("roof_pitches", "is read by nothing: a model replaces the building", "Leave one of the two out.");
       if (!entry.details.empty())
         table.fail("model", "replaces the building: nothing reads orders for its storeys, edges and bays",
                    "Leave one of the two out.");
@@ -150,6 +159,8 @@ class Reader {
           this->entry(*table.table(key), body + "." + key, *part, building);
         }
     table.finish();
+    if (entry.model && holds_parts)
+      table.fail("model", "replaces the building: nothing reads orders for its parts", "Leave one of the two out.");
     const bool orders =
         !entry.values.empty() || entry.side_pitches.any() || !entry.details.empty() || entry.keeps_place || entry.model;
     if (!orders && !holds_parts) table.fail("", "[" + body + "] orders nothing", "Leave it out.");
@@ -168,11 +179,9 @@ class Reader {
     out.source = needed("source", "Say where the model comes from.");
     out.licence = needed("licence", "Say under which licence it may be used, for example \"CC BY 4.0\".");
     out.author = table.text("author").value_or("");
-    std::filesystem::path path(out.file);
-    if (path.is_relative()) path = std::filesystem::path(out_.file).parent_path() / path;
-    out.path = path.string();
+    out.path = path_beside(out_.file, out.file);
     std::error_code none;
-    if (!std::filesystem::is_regular_file(path, none))
+    if (!std::filesystem::is_regular_file(out.path, none))
       table.fail("file", "is not there: " + out.path, "Paths are seen from the folder of the overrides.");
     out.sha256 = base::sha256_file(out.path);
     if (const auto at = table.numbers("at")) {
@@ -362,6 +371,25 @@ class Reader {
 };
 
 }  // namespace
+
+std::vector<std::string> models_of(const std::string& overrides) {
+  std::vector<std::string> out;
+  std::error_code none;
+  if (overrides.empty() || !std::filesystem::is_regular_file(overrides, none)) return out;
+  try {
+    TomlTable root = TomlTable::read(overrides);
+    for (const std::string& key : root.keys()) {
+      if (!root.holds_table(key)) continue;
+      TomlTable entry = *root.table(key);
+      if (!entry.holds_table("model")) continue;
+      const std::string path = path_beside(overrides, entry.table("model")->text("file").value_or(""));
+      if (std::filesystem::is_regular_file(path, none)) out.push_back(path);
+    }
+  } catch (const base::InputError&) {
+    out.clear();
+  }
+  return out;
+}
 
 const double* OverrideEntry::number(const std::string& attribute) const {
   const auto found = values.find(attribute);

@@ -84,7 +84,7 @@ bool meets_a_body(const model::Building& building, const model::RoofInstallation
   const geometry::ClosedMesh mine = view(made.solid, made.triangles);
   for (const model::BuildingPart& part : building.parts) {
     if (&part == but_for) continue;
-    const bool detailed = !part.lod3.solid.empty();
+    const bool detailed = !part.lod3.solid.empty() && part.lod3.solid.closed;
     if (geometry::interiors_meet(
             mine, detailed ? view(part.lod3.solid, part.lod3.triangles) : view(part.lod2, part.lod2_triangles)))
       return true;

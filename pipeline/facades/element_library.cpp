@@ -164,6 +164,16 @@ std::uint32_t ElementLibrary::take(std::string& error) {
     Made entry;
     if (fitted) {
       model::Element& element = fitted->element;
+      const elements::ElementKind* kind = catalogue_.find(kind_);
+      // Element files are checked with their defaults; what a rule asks of them may still be no element.
+      if (std::string defect = catalogue_.defect_of(element, kind ? std::min(width_, kind->width.most) : width_,
+                                                    kind ? std::min(height_, kind->height.most) : height_);
+          !defect.empty()) {
+        entry.error = fmt::format("{} {} x {} m: {}", kind_, width_, height_, defect);
+        made = made_.emplace(key_, std::move(entry)).first;
+        error = made->second.error;
+        return kNone;
+      }
       for (const model::ElementFace& face : element.mesh.faces) entry.parts[static_cast<std::size_t>(face.part)] = true;
       // Outputs add the reveal, which looks like the wall.
       if (element.opening.reveal > 0) entry.parts[static_cast<std::size_t>(ElementPart::wall)] = true;

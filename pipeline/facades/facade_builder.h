@@ -21,6 +21,7 @@
 #include "pipeline/facades/facades.h"
 #include "pipeline/facades/footprint_rules.h"
 #include "pipeline/facades/grammar_library.h"
+#include "pipeline/facades/leaf_polygons.h"
 #include "pipeline/facades/openings.h"
 #include "pipeline/facades/passages.h"
 #include "pipeline/facades/roof_elements.h"
@@ -103,7 +104,7 @@ class FacadeBuilder {
                           std::uint64_t row);
   /// An element on an upright leaf, and what is left of the leaf around its opening.
   /// \return false: the leaf stays what it is
-  bool order_on_footprint(const grammar::Leaf& leaf, const grammar::Frame& frame, const model::PartMaterial& look,
+  bool order_on_footprint(const grammar::Leaf& leaf, const grammar::Frame& frame, const LeafPolygons& made,
                           RuleSurfaces& surfaces, model::Detail& detail);
 
   void derive_segment(const GrammarLibrary::Entry& grammar, const FacadeContext& context, std::uint64_t seed,

@@ -30,6 +30,12 @@ namespace {
 constexpr double kUprightLeaf = 1e-3;
 /// Leaves of fewer faces have no inside.
 constexpr std::size_t kLeastBody = 4;
+/// Of the limit of shapes, which is one wall's.
+constexpr std::size_t kWallsOfAHouse = 20;
+/// m from the first corner of the footprint: no house has anything there.
+constexpr double kFarthest = 1000;
+/// Of its box, that a leaf must fill to be a rectangle.
+constexpr double kRectangle = 0.99;
 /// m2, of a piece of wall round an element.
 constexpr double kLeastPiece = 1e-4;
 /// m, by which a difference of polygons may move points apart.
@@ -65,7 +71,7 @@ void FacadeBuilder::build_on_footprint(const GrammarLibrary::Entry& grammar, con
   options.seed = base::random_bits(seed, base::hash_text(part.id), "footprint");
   options.building_seed = seed;
   options.row_seed = row;
-  options.limits.shapes = options_.most_shapes;
+  options.limits.shapes = options_.most_shapes * kWallsOfAHouse;
   std::optional<FacadeContext> context;
   if (!segments.empty()) {
     const FacadeSegment* front = &segments.front();
@@ -76,8 +82,15 @@ void FacadeBuilder::build_on_footprint(const GrammarLibrary::Entry& grammar, con
     options.source = [&](std::string_view name) { return context_value(*context, name); };
   }
   const grammar::Derivation derivation = grammar.deriver->run(footprint.shape, options);
-  for (const grammar::Diagnostic& d : derivation.diagnostics)
+  bool cut_short = false;
+  for (const grammar::Diagnostic& d : derivation.diagnostics) {
     if (d.severity == grammar::Severity::error) tell(d.message);
+    cut_short = cut_short || d.code == "too_many_shapes" || d.code == "too_many_calls";
+  }
+  if (cut_short) {  // half a house would stand open
+    tell("the rules of " + grammar.file + " were stopped: the body stays as it is without them");
+    return finish_told(part, 0);
+  }
 
   const model::PartMaterial usual = usual_materials_[static_cast<std::size_t>(model::ElementPart::wall)];
   RuleSurfaces surfaces;
@@ -89,8 +102,12 @@ void FacadeBuilder::build_on_footprint(const GrammarLibrary::Entry& grammar, con
     if (made.polygons.empty()) continue;
     if (leaf.shape.material && !leaf.shape.material->colour_map.empty())
       tell("the image " + leaf.shape.material->colour_map + " is not shown: what rules make has colours alone");
-    if (!std::isfinite(made.low.x + made.low.y + made.low.z + made.high.x + made.high.y + made.high.z)) {
-      ++dropped_[made.symbol + ": its place is no number"];
+    const auto is_far = [&](const Point3& p) {
+      return !(std::fabs(p.x - footprint.world.origin.x) < kFarthest &&
+               std::fabs(p.y - footprint.world.origin.y) < kFarthest && std::fabs(p.z - base) < kFarthest);
+    };
+    if (std::ranges::any_of(made.polygons, [&](const auto& p) { return std::ranges::any_of(p, is_far); })) {
+      ++dropped_[fmt::format("{}: it lies {:g} m off its footprint, or nowhere", made.symbol, kFarthest)];
       continue;
     }
     std::size_t corners = surfaces.corners();
@@ -99,15 +116,16 @@ void FacadeBuilder::build_on_footprint(const GrammarLibrary::Entry& grammar, con
       ++dropped_[made.symbol + ": more than two million corners on one footprint"];
       continue;
     }
-    if (leaf.order && order_on_footprint(leaf, frame, made.look, surfaces, detail)) continue;
-    const bool body = made.polygons.size() >= kLeastBody;
+    if (leaf.order && order_on_footprint(leaf, frame, made, surfaces, detail)) continue;
+    const bool clear = leaf.shape.material && leaf.shape.material->colour[3] < 1;
+    const bool body = made.polygons.size() >= kLeastBody && !clear;
     for (auto& p : made.polygons) surfaces.add(made.symbol, std::move(p), made.look, body);
   }
-  if (surfaces.empty()) {
+  RuleSurfaces::Made made = surfaces.take(a.ground_height.value);
+  if (made.surfaces.faces.empty()) {
     tell("the rules of " + grammar.file + " made nothing of the footprint: the body stays as it is without them");
     return finish_told(part, 0);
   }
-  RuleSurfaces::Made made = surfaces.take(a.ground_height.value);
   detail.solid = std::move(made.surfaces);
   detail.triangles = std::move(made.triangles);
   detail.rules = std::move(made.rules);
@@ -116,8 +134,8 @@ void FacadeBuilder::build_on_footprint(const GrammarLibrary::Entry& grammar, con
   finish_told(part, 0);
 }
 
-bool FacadeBuilder::order_on_footprint(const grammar::Leaf& leaf, const grammar::Frame& frame,
-                                       const model::PartMaterial& look, RuleSurfaces& surfaces, model::Detail& detail) {
+bool FacadeBuilder::order_on_footprint(const grammar::Leaf& leaf, const grammar::Frame& frame, const LeafPolygons& made,
+                                       RuleSurfaces& surfaces, model::Detail& detail) {
   const grammar::ElementRequest& order = *leaf.order;
   if (order.name == kPaintOperation) {
     tell("blockrand.paint is for rules that begin on a wall; color() does it on a footprint");
@@ -127,17 +145,27 @@ bool FacadeBuilder::order_on_footprint(const grammar::Leaf& leaf, const grammar:
     tell("blockrand." + order.name + " wants the name of an element first");
     return false;
   }
-  const auto& [right, up, out] = frame.axes;
+  const model::PartMaterial& look = made.look;
+  const grammar::Vector3 right = frame.axes[0], up = frame.axes[1];
   if (std::fabs(right.z) > kUprightLeaf || up.z < 1 - kUprightLeaf) {
     ++dropped_[leaf.symbol + ": elements stand on upright faces alone"];
+    return false;
+  }
+  double area = 0;
+  for (const auto& p : made.polygons) {
+    Point3 sum{};
+    for (std::size_t i = 1; i + 1 < p.size(); ++i) sum = sum + model::cross(p[i] - p[0], p[i + 1] - p[0]);
+    area += model::length(sum) / 2;
+  }
+  if (std::fabs(leaf.shape.size.z) > kUprightLeaf || area < kRectangle * leaf.shape.size.x * leaf.shape.size.y) {
+    ++dropped_[leaf.symbol + ": elements stand on flat rectangles alone"];
     return false;
   }
   const std::string& name = std::get<std::string>(order.arguments[0]);
   const elements::ElementKind* kind = grammars_.elements().find(name);
   const bool run = kind && kind->width.measures == "run";
   const Point2 along = Point2{right.x, right.y} * (1 / std::hypot(right.x, right.y));
-  const grammar::Vector3 depth = out * leaf.shape.size.z;  // before bodies
-  const grammar::Vector3 corner = frame.origin + depth;
+  const grammar::Vector3 corner = frame.origin;
   const double width = leaf.shape.size.x, height = leaf.shape.size.y;
   // u along, v up, w out of the leaf's plane.
   const auto at = [&](double u, double v, double w) {

@@ -43,13 +43,14 @@ void FacadeBuilder::build(model::Building& building, BuildingPart& part, masses:
   const std::uint64_t row =
       base::random_bits(options_.seed, base::hash_text(building.situation.block), "row of facades");
   std::vector<FacadeSegment> segments = facade_segments(building, walls);
+  portal_elements_ = yielding_ = missed_doors_ = before_wall_ = yielding_geometry_ = 0;
+  checked_portals_.clear();
+  portals_.clear();
   if (grammar->on_footprint)
     return build_on_footprint(*grammar, building, part, walls, segments, eaves_level(part), seed, row);
   portals_ = take_portals(part, walls, segments);
   const double eaves = eaves_level(part);
   link_corners(segments, walls, eaves);
-  portal_elements_ = yielding_ = missed_doors_ = before_wall_ = yielding_geometry_ = 0;
-  checked_portals_.clear();
   if (!portals_.empty()) {
     try_passages(part, walls);
     close_portals();

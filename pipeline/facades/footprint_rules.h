@@ -43,7 +43,7 @@ class RuleSurfaces {
   /// Corners of one part: what is beyond is told, and left out.
   static constexpr std::size_t kMostCorners = 2'000'000;
 
-  /// \param body  they are of a leaf with an inside: where two such leaves touch, both faces are hidden and left out
+  /// \param body  they are of an opaque leaf with an inside: where two such leaves touch, both faces are hidden and left out
   void add(const std::string& rule, std::vector<model::Point3> polygon, const model::PartMaterial& look, bool body);
   bool empty() const { return faces_.empty(); }
   std::size_t corners() const { return corners_; }

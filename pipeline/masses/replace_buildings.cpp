@@ -40,6 +40,15 @@ Point2 middle_of(const model::Polygon& polygon) {
   return model::snap(Point2{(low.x + high.x) / 2, (low.y + high.y) / 2});
 }
 
+/// m between the middles of a model and of the outline.
+double far_off(const LandmarkModel& landmark, const model::Polygon& outline) {
+  if (landmark.at_outline || landmark.surfaces.vertices.empty()) return 0;
+  Point2 low{1e300, 1e300}, high{-1e300, -1e300};
+  for (const Point3& v : landmark.surfaces.vertices)
+    low = {std::min(low.x, v.x), std::min(low.y, v.y)}, high = {std::max(high.x, v.x), std::max(high.y, v.y)};
+  return model::distance(middle_of(outline), {(low.x + high.x) / 2, (low.y + high.y) / 2});
+}
+
 }  // namespace
 
 void join_replaced(model::Region& region, const LandmarkModels& models) {
@@ -47,6 +56,14 @@ void join_replaced(model::Region& region, const LandmarkModels& models) {
     const LandmarkModel* landmark = model_of(models, building.osm);
     const model::Polygon* outline = largest(building);
     if (!landmark || !outline || building.parts.empty()) continue;
+    if (const double off = far_off(*landmark, *outline); !(off <= kFarthestModel)) {
+      if (building.owned)
+        region.report.add(
+            building.osm, model::IssueCode::override_unmatched,
+            fmt::format("{}: {} lies {:.0f} km off the outline and replaces nothing; is longitude first in `at`?",
+                        landmark->told->order, landmark->told->file, off / 1000));
+      continue;
+    }
     building.replaced = landmark->told;
     for (const BuildingPart& part : building.parts)
       if (part.osm != building.osm && part.mapped_index != model::kNoIndex)
@@ -108,6 +125,10 @@ void replace_buildings(model::Region& region, const LandmarkModels& models) {
     if (!told.author.empty()) what += ", " + told.author;
     const double off = model::distance(middle, {(low.x + high.x) / 2, (low.y + high.y) / 2});
     if (off > kFarOff) what += fmt::format("; it lies {:.0f} m off the outline", off);
+    if (landmark->left_out > 0)
+      what += fmt::format("; {} faces whose rings cross or touch are left out", landmark->left_out);
+    if (building.outline.size() > 1)
+      what += fmt::format("; the largest of {} pieces of the outline is its footprint", building.outline.size());
     region.report.add(building.osm, model::IssueCode::building_replaced, std::move(what));
     if (part.lod2.closed) continue;
     part.fallbacks.push_back(model::IssueCode::model_not_closed);

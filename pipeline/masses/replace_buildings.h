@@ -15,11 +15,15 @@ struct LandmarkModel {
   model::Solid surfaces;  ///< on the grid; z above the ground under the building. Closed where it is a valid solid
   model::SolidTriangles triangles;
   std::vector<bool> coloured;  ///< by face; the others look like the building
+  std::size_t left_out = 0;    ///< faces whose rings cross or touch
   bool at_outline = false;     ///< x and y count from the middle of the outline, not from the CRS's origin
 };
 
 /// By building.
 using LandmarkModels = std::vector<LandmarkModel>;
+
+/// m: a model farther off the outline that it replaces is told (OVERRIDE_UNMATCHED) and replaces nothing.
+inline constexpr double kFarthestModel = 2000;
 
 /// Makes one body of each building that has a model, so that build_masses() gives it footprint and block. Its mapped parts are
 /// represented by it.

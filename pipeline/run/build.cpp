@@ -72,6 +72,9 @@ struct Place {
 void record_extract(const BuildOptions& options, const BuildInputs& inputs, const LocatedExtract& located,
                     BuildRecord& record) {
   record.inputs = input_files(options, inputs);
+  if (inputs.grammars)
+    record.element_credits.assign(inputs.grammars->elements().credits().begin(),
+                                  inputs.grammars->elements().credits().end());
   if (!record.area) record.data_sha256 = data_sha256(located.extract);
   if (inputs.terrain) record.terrain = inputs.terrain->describe();
   record.heights = inputs.heights;

@@ -188,6 +188,9 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
   j["attribution"] = outputs::attribution(r.images);
   j["data"] = {{"sha256", r.data_sha256}};
   j["inputs"] = inputs_json(r.inputs);
+  for (const auto& credit : r.element_credits)
+    j["element_credits"].push_back(
+        {{"element", credit.kind}, {"licence", credit.licence}, {"source", credit.source}, {"author", credit.author}});
   j["data_time"] = r.data_time;
   j["configuration"] = configuration(options);
   j["crs"] = crs_json(r);

@@ -19,6 +19,7 @@
 #include "pipeline/outputs/statistics.h"
 #include "pipeline/run/build.h"
 #include "pipeline/run/region_facts.h"
+#include "styles/elements/element_catalogue.h"
 
 namespace blockrand::run {
 
@@ -32,7 +33,8 @@ struct InputFile {
 
 /// Everything that the same call writes again byte for byte.
 struct BuildRecord {
-  std::vector<InputFile> inputs;  ///< without the extract: `data_sha256` says what was in it
+  std::vector<InputFile> inputs;                         ///< without the extract: `data_sha256` says what was in it
+  std::vector<elements::ElementCredit> element_credits;  ///< of element files that say who made what they hold
   std::string data_sha256;
   std::string data_time;
   georef::Crs crs;

@@ -31,6 +31,12 @@ constexpr double kUpright = 0.1;
 constexpr double kSmallest = 1e-6;  ///< m2, of a face
 /// Faces of one model: an unsimplified scan would be most of a town.
 constexpr std::size_t kMostFaces = 500'000;
+/// m: nothing that stands for one building is larger.
+constexpr double kLargest = 2000;
+/// m, of coordinates of the build: farther ones are no place on the Earth.
+constexpr double kFarthest = 5e7;
+/// m across a face's plane: a step of the grid, and what turning costs. Others become triangles.
+constexpr double kPlane = 0.003;
 
 bool is_gltf(const std::string& path) { return path.ends_with(".glb") || path.ends_with(".gltf"); }
 
@@ -48,36 +54,52 @@ bool is_outside(const reference::Surface& s) {
          s.surface_class != SurfaceClass::furniture;
 }
 
-/// Each polygon once; those of thematic surfaces with their class, whichever geometry names them first.
-std::vector<Shown> highest_level(const reference::ReferenceModel& model) {
-  const auto body = [](const reference::Geometry& g) {
-    return g.kind == reference::GeometryKind::solid || g.kind == reference::GeometryKind::surfaces;
-  };
-  int highest = 0;
+bool is_body(const reference::Geometry& g) {
+  return g.kind == reference::GeometryKind::solid || g.kind == reference::GeometryKind::surfaces;
+}
+
+/// Of what a building or part itself has; -1: nothing with faces.
+int highest_level(const reference::Building& b) {
+  int highest = -1;
   const auto look_at = [&](const std::vector<reference::Geometry>& all) {
     for (const reference::Geometry& g : all)
-      if (body(g) && !g.faces.empty()) highest = std::max(highest, g.lod);
+      if (is_body(g) && !g.faces.empty()) highest = std::max(highest, g.lod);
   };
+  look_at(b.geometries);
+  for (const reference::Surface& s : b.surfaces)
+    if (is_outside(s)) look_at(s.geometries);
+  return highest;
+}
+
+/// Of each building and part its highest level of detail, each polygon once; those of thematic surfaces with their class, whichever
+/// geometry names them first. A building's own body says in general what its parts say in particular: it is left out where they say more.
+std::vector<Shown> shown_polygons(const reference::ReferenceModel& model) {
+  std::vector<int> of_parts(model.buildings.size(), -1), own;
   for (const reference::Building& b : model.buildings) {
-    look_at(b.geometries);
-    for (const reference::Surface& s : b.surfaces)
-      if (is_outside(s)) look_at(s.geometries);
+    own.push_back(highest_level(b));
+    if (b.parent >= 0) {
+      int& parts = of_parts[static_cast<std::size_t>(b.parent)];
+      parts = std::max(parts, own.back());
+    }
   }
   std::vector<Shown> out;
   std::set<std::uint32_t> known;
-  const auto take = [&](const std::vector<reference::Geometry>& all, std::optional<reference::SurfaceClass> of) {
-    for (const reference::Geometry& g : all)
-      if (body(g) && g.lod == highest)
-        for (const reference::Face& f : g.faces)
-          if (known.insert(f.polygon).second) out.push_back({f.polygon, f.reversed, of});
-  };
-  for (const reference::Building& b : model.buildings)
+  for (std::size_t i = 0; i < model.buildings.size(); ++i) {
+    const reference::Building& b = model.buildings[i];
+    if (own[i] < of_parts[i]) continue;
+    const auto take = [&](const std::vector<reference::Geometry>& all, std::optional<reference::SurfaceClass> of) {
+      for (const reference::Geometry& g : all)
+        if (is_body(g) && g.lod == own[i])
+          for (const reference::Face& f : g.faces)
+            if (known.insert(f.polygon).second) out.push_back({f.polygon, f.reversed, of});
+    };
     for (const reference::Surface& s : b.surfaces) {
       if (!is_outside(s)) continue;
       take(s.geometries, s.surface_class);
       for (const reference::Opening& o : s.openings) take(o.geometries, s.surface_class);
     }
-  for (const reference::Building& b : model.buildings) take(b.geometries, std::nullopt);
+    take(b.geometries, std::nullopt);
+  }
   return out;
 }
 
@@ -107,7 +129,14 @@ class Placer {
     std::optional<georef::Transform> transform;
     if (landmark.has_place) transform.emplace(landmark.model.crs.horizontal, projection_.crs().authority_code);
     model::Point2 origin{};
-    if (landmark.order.at) origin = model::snap(projection_.forward((*landmark.order.at)[0], (*landmark.order.at)[1]));
+    const auto refuse = [&](const std::string& what, const std::string& remedy) {
+      throw base::InputError(landmark.order.path, "", what + " (" + landmark.told_from + ")", remedy);
+    };
+    if (landmark.order.at) {
+      origin = model::snap(projection_.forward((*landmark.order.at)[0], (*landmark.order.at)[1]));
+      if (!(std::fabs(origin.x) < kFarthest && std::fabs(origin.y) < kFarthest))
+        refuse("`at` lies where the build's coordinates do not reach", "Is longitude first?");
+    }
     out.at_outline = !landmark.has_place && !landmark.order.at;
     const auto placed = [&](const Point3& p) {
       if (transform) {
@@ -123,7 +152,7 @@ class Placer {
     };
     std::vector<Ready> ready;
     double lowest = 1e300;
-    for (const Shown& shown : highest_level(landmark.model)) {
+    for (const Shown& shown : shown_polygons(landmark.model)) {
       const reference::Polygon3& polygon = landmark.model.polygons[shown.polygon];
       Ready& r = ready.emplace_back();
       r.shown = shown;
@@ -136,6 +165,24 @@ class Placer {
       add(polygon.outer);
       for (const auto& hole : polygon.holes) add(hole);
     }
+    if (ready.empty())
+      refuse("draws no surface that can be read: it may have footprints alone, or shapes from other files",
+             "Give it surfaces or solids of LoD1 to LoD4");
+    model::Point2 low{1e300, 1e300}, high{-1e300, -1e300};
+    double top = -1e300;
+    for (const Ready& r : ready)
+      for (const auto& ring : r.rings)
+        for (const Point3& p : ring) {
+          if (!std::isfinite(p.x + p.y + p.z)) refuse("has a corner that is no place in the build", "Mend it");
+          low = {std::min(low.x, p.x), std::min(low.y, p.y)}, high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+          top = std::max(top, p.z);
+        }
+    if (std::max({high.x - low.x, high.y - low.y, top - lowest}) > kLargest)
+      refuse(fmt::format("is {:.0f} m large", std::max({high.x - low.x, high.y - low.y, top - lowest})),
+             "Is `scale` right? It leads from the model's units to metres");
+    if (!landmark.has_place && std::max({std::fabs(low.x - origin.x), std::fabs(high.x - origin.x),
+                                         std::fabs(low.y - origin.y), std::fabs(high.y - origin.y)}) > 2 * kLargest)
+      refuse("lies kilometres off its own origin", "Move it there");
     geometry::SolidBuilder builder;
     const double floor = model::snap(landmark.order.lift);
     for (Ready& r : ready) {
@@ -145,8 +192,8 @@ class Placer {
     }
     out.surfaces = builder.take();
     if (out.surfaces.faces.empty())
-      throw base::InputError(landmark.order.path, "", "has no face of a millimetre or more",
-                             "Is `scale` right? It leads from the model's units to metres");
+      refuse("has no face of a millimetre or more",
+             landmark.has_place ? "Mend its faces" : "Is `scale` right? It leads from the model's units to metres");
     auto triangles = geometry::triangulate(out.surfaces);
     out.surfaces.closed = triangles && geometry::check_solid(out.surfaces, *triangles, geometry::kBuilt).valid();
     if (triangles) out.triangles = std::move(*triangles);
@@ -158,7 +205,7 @@ class Placer {
     return static_cast<std::uint8_t>(std::max(defaults.material(name), 0));
   }
 
-  /// Each face whole where it is a simple polygon, else not at all: rings that cross show nothing.
+  /// A face whole where it is a simple, plane polygon, else its triangles; rings that cross show nothing, and are counted.
   void add_face(geometry::SolidBuilder& builder, const std::vector<std::vector<Point3>>& rings, const Shown& shown,
                 const std::optional<model::Colour>& colour, double floor, masses::LandmarkModel& out) const {
     std::vector<std::vector<Point3>> clean;
@@ -183,15 +230,32 @@ class Placer {
     if (clean.empty()) return;
     const Point3 normal = normal_of(clean[0]);
     const double length = model::length(normal);
-    if (length < kSmallest || !geometry::triangulate(grid, loops)) return;
+    const auto triangles = geometry::triangulate(grid, loops);
+    if (length < kSmallest || !triangles) {
+      out.left_out += length >= kSmallest;
+      return;
+    }
     model::Face face;
     const double up = normal.z / length;
     const bool on_floor = std::all_of(clean[0].begin(), clean[0].end(), [&](const Point3& p) { return p.z == floor; });
     face.kind = kind_of(shown.surface_class, up, on_floor);
     face.material = face.kind == model::SurfaceKind::roof ? roof_ : wall_;
     if (colour) face.colour = *colour;
-    builder.add_face(clean, face);
-    out.coloured.push_back(colour.has_value());
+    const bool plane = std::ranges::all_of(clean, [&](const auto& ring) {
+      return std::ranges::all_of(
+          ring, [&](const Point3& p) { return std::fabs(model::dot(normal, p - clean[0][0])) <= kPlane * length; });
+    });
+    if (plane) {
+      builder.add_face(clean, face);
+      out.coloured.push_back(colour.has_value());
+      return;
+    }
+    std::vector<Point3> all;
+    for (const auto& ring : clean) all.insert(all.end(), ring.begin(), ring.end());
+    for (const geometry::Triangle& t : *triangles) {
+      builder.add_face({all[t[0]], all[t[1]], all[t[2]]}, face);
+      out.coloured.push_back(colour.has_value());
+    }
   }
 
   static model::SurfaceKind kind_of(std::optional<reference::SurfaceClass> of, double up, bool on_floor) {

@@ -26,11 +26,12 @@ int achieved_lod(const std::vector<const model::BuildingPart*>& parts, int asked
 
 Outcomes decide_outcomes(const Region& region, int asked) {
   Outcomes out;
-  const auto decide = [&](std::uint32_t index, const std::vector<const model::BuildingPart*>& own, IssueCode failure) {
+  const auto decide = [&](std::uint32_t index, const std::vector<const model::BuildingPart*>& own, IssueCode failure,
+                          bool replaced = false) {
     const int lod = achieved_lod(own, asked);
     if (lod >= 0) {
       out.list.push_back({index, ObjectState::modelled, IssueCode::none, {}, lod});
-      if (lod < asked) out.below_quality = true;
+      if (lod < asked && !replaced) out.below_quality = true;  // a model that was ordered is what was asked for
       return true;
     }
     out.list.push_back(
@@ -53,7 +54,7 @@ Outcomes decide_outcomes(const Region& region, int asked) {
     if (own.empty() && representative)
       out.list.push_back({building.mapped_index, ObjectState::represented, IssueCode::none, *representative, -1});
     else
-      decide(building.mapped_index, own, building.failure);
+      decide(building.mapped_index, own, building.failure, building.replaced != nullptr);
   }
   for (const model::SettledPart& part : region.settled_parts)
     out.list.push_back({part.mapped_index, part.state, IssueCode::none, part.related, -1});

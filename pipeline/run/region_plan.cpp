@@ -8,6 +8,7 @@
 
 #include "importers/imagery/image_files.h"
 #include "importers/osm/apply_changes.h"
+#include "pipeline/attributes/overrides.h"
 #include "pipeline/attributes/rule_sets.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/sha256.h"
@@ -38,6 +39,7 @@ std::string settings_sha256(const UpdateOptions& options) {
     add(path.lexically_relative(options.build.configs).string()), add(base::sha256_file(path.string()));
   for (const std::string& path : {options.build.overrides, options.region.polygon})
     if (!path.empty() && fs::is_regular_file(path, error)) add(base::sha256_file(path));
+  for (const std::string& path : attributes::models_of(options.build.overrides)) add(base::sha256_file(path));
   if (!options.build.districts.empty()) {
     // With what it builds on, the files that its rules name, and rule files beside it.
     const attributes::ReadRuleSets sets = attributes::read_rule_sets(options.build.configs, options.build.districts);
@@ -49,6 +51,11 @@ std::string settings_sha256(const UpdateOptions& options) {
       std::set<fs::path> rules;
       for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
         if (entry->path().extension() == ".cga") rules.insert(entry->path());
+      // Element files, the models that they name, and profiles.
+      for (const char* data : {"elements", "profiles"})
+        for (fs::directory_iterator entry(folder / data, error), end; !error && entry != end; entry.increment(error))
+          if (entry->is_regular_file(error)) rules.insert(entry->path());
+      error.clear();
       for (const fs::path& path : rules) add(path.filename().string()), add(base::sha256_file(path.string()));
     }
   }

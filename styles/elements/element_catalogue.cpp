@@ -57,6 +57,8 @@ struct ElementCatalogue::Data {
   ProfileLibrary profiles;
   std::vector<std::string> files;
   std::vector<ElementCredit> credits;
+  std::map<std::string, bool, std::less<>>
+      of_files;  ///< by kind: made of pieces or a model alone, not of a built-in kind
 
   Data() {
     const auto own = generators();
@@ -94,6 +96,12 @@ std::span<const ElementCredit> ElementCatalogue::credits() const { return data_-
 const ElementKind* ElementCatalogue::find(std::string_view name) const {
   const auto found = data_->by_name.find(name);
   return found == data_->by_name.end() ? nullptr : &data_->kinds[found->second];
+}
+
+std::string ElementCatalogue::defect_of(const Element& element, double width, double height) const {
+  const auto found = data_->of_files.find(element.kind);
+  if (found == data_->of_files.end()) return {};
+  return element_defect(element, model::snap(width), model::snap(height), found->second);
 }
 
 tl::expected<Element, std::string> ElementCatalogue::make(std::string_view kind, double width, double height,
@@ -136,6 +144,7 @@ ElementCatalogue read_element_catalogue(std::span<const std::string> folders, co
   for (const auto& [name, read] : by_name) {
     if (!read->licence.empty() || !read->source.empty() || !read->author.empty())
       data->credits.push_back({name, read->licence, read->source, read->author});
+    data->of_files.emplace(name, !read->base);
     data->add(read->kind, [file = read](const Request& request, Element& element) {
       return make_from_file(*file, request, element);
     });

@@ -48,6 +48,9 @@ class ElementCatalogue {
   /// Of the files that say something of it, by the kind's name.
   std::span<const ElementCredit> credits() const;
 
+  /// Why an element of a file's kind is no sound one, as a rule asked for it; empty for sound ones and for built-in kinds.
+  std::string defect_of(const Element& element, double width, double height) const;
+
   /// Makes an element. Pure: the same arguments give the same bytes.
   ///
   /// \param width, height  m, what they measure is in ElementKind

@@ -59,6 +59,7 @@ struct BuiltTown::State {
   classify::Tables tables = classify::Tables::read(std::string(BLOCKRAND_SOURCE_DIR) + "/configs");
   attributes::ReadRuleSets rules = attributes::read_rule_sets(std::string(BLOCKRAND_SOURCE_DIR) + "/configs", "");
   attributes::Overrides overrides;
+  masses::LandmarkModels landmarks;
   evidence::FactsExtract facts;
   evidence::TagFacts tags;
   evidence::StyleExtract style_extract;
@@ -131,6 +132,7 @@ model::Region BuiltTown::tile(std::size_t shard, int lod) const {
                           .neighbours = s.neighbours,
                           .assigner = *s.assigner,
                           .overrides = s.overrides,
+                          .landmarks = s.landmarks,
                           .styles = s.style_inputs,
                           .repair = s.repair,
                           .generate = usual_generation(),
