@@ -80,10 +80,11 @@ int check(const Settings& s) {
     try {
       const attributes::ReadRuleSets read = attributes::read_rule_sets(s.build.configs, name);
       text += summary(read.book);
-      for (std::string& what : facades::unread_parameters(
-               read.book,
-               facades::read_grammars(s.build.configs, read.book.presets, importers::reference::read_triangle_model)))
-        errors.push_back(std::move(what));
+      const facades::GrammarLibrary grammars =
+          facades::read_grammars(s.build.configs, read.book.presets, importers::reference::read_triangle_model);
+      text += fmt::format("{} kinds of elements, {} profiles\n", grammars.elements().kinds().size(),
+                          grammars.elements().profiles().size());
+      for (std::string& what : facades::unread_parameters(read.book, grammars)) errors.push_back(std::move(what));
       return true;
     } catch (const base::InputError& error) {
       errors.emplace_back(error.what());

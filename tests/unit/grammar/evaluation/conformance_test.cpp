@@ -360,7 +360,7 @@ TEST(Conformance, Row35CenterAndPivot) {
   const Frame at = scope_in_world(leaf(chimney, "X."));
   EXPECT_NEAR(at.origin.x, 4.5, kTolerance);
   EXPECT_NEAR(at.origin.y, 9, kTolerance);
-  EXPECT_NEAR(at.origin.z, -9.5, kTolerance);
+  EXPECT_NEAR(at.origin.z, -10.5, kTolerance);
   const auto turned = derive_text("Lot --> extrude(5) setPivot(xyz,1) X.", rectangle(10, 20));
   const Shape& s = leaf(turned, "X.");
   EXPECT_EQ(size_text(s), "20 5 10");
