@@ -159,6 +159,36 @@ std::optional<std::vector<Triangle>> triangulate(std::span<const Grid2> points,
   return out;
 }
 
+std::optional<std::vector<Triangle>> triangulate_touching(std::span<const Grid2> points,
+                                                          std::span<const std::vector<std::uint32_t>> loops) {
+  Cdt cdt;
+  const Grid2 origin = points[loops[0][0]];
+  std::vector<Cdt::Vertex_handle> handles;
+  const auto vertex = [&](std::uint32_t i) {
+    const Grid2 p = points[i] - origin;
+    const auto handle = cdt.insert(Kernel::Point_2(static_cast<double>(p.x), static_cast<double>(p.y)),
+                                   handles.empty() ? Cdt::Face_handle() : handles.back()->face());
+    handle->info() = i;
+    return handle;
+  };
+  try {
+    for (const auto& loop : loops) {
+      handles.clear();
+      for (const std::uint32_t i : loop) handles.push_back(vertex(i));
+      for (std::size_t k = 0; k < handles.size(); ++k)
+        if (handles[k] != handles[(k + 1) % handles.size()])
+          cdt.insert_constraint(handles[k], handles[(k + 1) % handles.size()]);
+    }
+  } catch (const Cdt::Intersection_of_constraints_exception&) {
+    return std::nullopt;
+  }
+  mark_nesting(cdt, [&](Cdt::Face_handle face, int i) { return cdt.is_constrained({face, i}); });
+  std::vector<Triangle> out;
+  for (auto f = cdt.finite_faces_begin(); f != cdt.finite_faces_end(); ++f)
+    if (f->info() % 2 == 1) out.push_back({f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});
+  return out;
+}
+
 std::optional<std::vector<Triangle>> triangulate_with_lines(std::span<const Grid2> points,
                                                             std::span<const std::vector<std::uint32_t>> loops,
                                                             std::span<const std::array<std::uint32_t, 2>> lines) {

@@ -21,7 +21,12 @@ using Triangle = std::array<std::uint32_t, 3>;
 std::optional<std::vector<Triangle>> triangulate(std::span<const Grid2> points,
                                                  std::span<const std::vector<std::uint32_t>> loops);
 
-/// As above, with `lines`, pairs of indices into `points`, as edges of triangles. Lines may end anywhere inside the
+/// As the first, of a polygon whose rings touch each other at points, which then have one index in several loops; what an odd
+/// number of loops encloses is inside. Empty when loops cross.
+std::optional<std::vector<Triangle>> triangulate_touching(std::span<const Grid2> points,
+                                                          std::span<const std::vector<std::uint32_t>> loops);
+
+/// As the first, with `lines`, pairs of indices into `points`, as edges of triangles. Lines may end anywhere inside the
 /// polygon, or at points of the loops; a line from a point to itself is that point. Points that no loop and no line
 /// names are not used. Empty as above, and when a line crosses a loop or another line, or passes through a point.
 std::optional<std::vector<Triangle>> triangulate_with_lines(std::span<const Grid2> points,
