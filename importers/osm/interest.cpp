@@ -41,6 +41,8 @@ void Interest::add(model::OsmType type, std::string_view key, std::string_view v
   for (std::size_t i = kFirstOfLetter[letter]; i < kFirstOfLetter[letter + 1u]; ++i) {
     const InterestRule& rule = kInterestRules[i];
     if (!is_of(rule, key, value)) continue;
+    if (!surroundings && rule.kinds == bit(model::FeatureKind::surrounding)) continue;
+    if (type != model::OsmType::node && !rule.ways) continue;
     if (type == model::OsmType::node && !rule.nodes) return;
     kinds |= rule.kinds;
     building = building || rule.mark == ObjectMark::building;

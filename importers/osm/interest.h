@@ -18,6 +18,7 @@ struct Interest {
   bool area_by_tag = false;    ///< a closed way with this tag is an area: landuse, leisure, most of natural …
   bool line_by_tag = false;    ///< a closed way with this tag is a line unless area=yes: highway, barrier …
   bool covered_way = false;    ///< tunnel=building_passage or covered=*
+  bool surroundings = false;   ///< rows of interest_rules.h that serve the surroundings alone count. Set before `add`
 
   void add(model::OsmType type, std::string_view key, std::string_view value);
   /// After the last tag: what only the tags together tell.

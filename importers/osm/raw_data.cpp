@@ -30,8 +30,8 @@ Role role_of(std::string_view text) {
 
 class RawReader {
  public:
-  RawReader(OsmFile& file, const std::function<void(std::string_view, double)>& progress)
-      : file_(file), progress_(progress) {}
+  RawReader(OsmFile& file, bool surroundings, const std::function<void(std::string_view, double)>& progress)
+      : file_(file), surroundings_(surroundings), progress_(progress) {}
 
   RawData read() {
     read_relations();
@@ -118,7 +118,7 @@ class RawReader {
     const bool rising = pass(osmium::osm_entity_bits::relation, "reading relations", data_.relation_count,
                              [&](const osmium::OSMObject& object) {
                                const auto& relation = static_cast<const osmium::Relation&>(object);
-                               const Interest interest = interest_of(model::OsmType::relation, object);
+                               const Interest interest = interest_of(model::OsmType::relation, object, surroundings_);
                                const std::optional<RelationType> type = kept_as(relation, interest);
                                if (!type) return;
                                RawRelation raw;
@@ -157,7 +157,7 @@ class RawReader {
     const bool rising =
         pass(osmium::osm_entity_bits::way, "reading ways", data_.way_count, [&](const osmium::OSMObject& object) {
           const auto& way = static_cast<const osmium::Way&>(object);
-          const Interest interest = interest_of(model::OsmType::way, object);
+          const Interest interest = interest_of(model::OsmType::way, object, surroundings_);
           if (!is_kept(interest) && !std::binary_search(needed.begin(), needed.end(), way.id())) return;
           RawWay raw;
           keep(raw, object, interest);
@@ -206,7 +206,7 @@ class RawReader {
           first = false;
           last = node.id();
           if (file_.deleted_by_editor(osmium::item_type::node, node.id())) return;
-          const Interest interest = interest_of(model::OsmType::node, object);
+          const Interest interest = interest_of(model::OsmType::node, object, surroundings_);
           if (const std::size_t slot = data_.positions.slot(node.id());
               slot != NodePositions::npos && !file_.ways_have_places())
             data_.positions.set(slot, node.visible() ? position_of(node.location()) : kMissing, node.version());
@@ -230,6 +230,7 @@ class RawReader {
   }
 
   OsmFile& file_;
+  bool surroundings_;
   const std::function<void(std::string_view, double)>& progress_;
   RawData data_;
 };
@@ -290,8 +291,9 @@ std::string_view RawData::tag(const RawObject& object, std::string_view key) con
 const RawWay* RawData::way(std::int64_t id) const { return find_by_id(ways, id); }
 const RawRelation* RawData::relation(std::int64_t id) const { return find_by_id(relations, id); }
 
-RawData read_raw(OsmFile& file, const std::function<void(std::string_view phase, double fraction)>& progress) {
-  return RawReader(file, progress).read();
+RawData read_raw(OsmFile& file, bool surroundings,
+                 const std::function<void(std::string_view phase, double fraction)>& progress) {
+  return RawReader(file, surroundings, progress).read();
 }
 
 }  // namespace blockrand::importers::osm

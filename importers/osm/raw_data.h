@@ -103,7 +103,9 @@ struct RawData {
 
 /// Reads the file in three passes, relations first, so that each pass knows what the one before needs; a fourth to
 /// sixth follow only where ids do not rise, to find out whether an object has a newer version elsewhere.
+/// \param surroundings  as Interest has it
 /// \throws base::InputError, NulInText
-RawData read_raw(OsmFile& file, const std::function<void(std::string_view phase, double fraction)>& progress);
+RawData read_raw(OsmFile& file, bool surroundings,
+                 const std::function<void(std::string_view phase, double fraction)>& progress);
 
 }  // namespace blockrand::importers::osm

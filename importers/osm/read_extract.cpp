@@ -321,11 +321,11 @@ model::Extract read_extract(const std::string& path, const ReadOptions& options)
 model::Extract read_file(OsmFile& file, const std::string& path, const ReadOptions& options) {
   RawData data;
   try {
-    data = read_raw(file, options.progress);
+    data = read_raw(file, options.surroundings, options.progress);
   } catch (const NulInText&) {
     file.clean_strings();
     try {
-      data = read_raw(file, options.progress);
+      data = read_raw(file, options.surroundings, options.progress);
     } catch (const NulInText&) {
       throw base::InputError(path, "", "tags cannot be read", "The file is damaged: fetch or write it again");
     }

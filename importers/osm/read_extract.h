@@ -22,7 +22,8 @@ struct ReadOptions {
   std::optional<std::array<double, 4>> bbox;
   /// Boxes within `bbox`: what is in none of them is not kept; empty: all of it.
   std::vector<std::array<double, 4>> parts;
-  bool placeless = false;  ///< with `bbox`: buildings without any known position are kept all the same
+  bool surroundings = false;  ///< features of FeatureKind::surrounding are kept as well
+  bool placeless = false;     ///< with `bbox`: buildings without any known position are kept all the same
   /// With `bbox`: a building is kept when its bounding box touches, as a feature is. For windows around what is built: a building
   /// is a neighbour wherever it stands, however far off its middle.
   bool touching = false;

@@ -16,8 +16,9 @@ RelationType relation_type_of(std::string_view text) {
 
 }  // namespace
 
-Interest interest_of(model::OsmType type, const osmium::OSMObject& object) {
+Interest interest_of(model::OsmType type, const osmium::OSMObject& object, bool surroundings) {
   Interest interest;
+  interest.surroundings = surroundings;
   for_each_tag(object, [&](std::string_view key, std::string_view value) { interest.add(type, key, value); });
   interest.finish(type);
   return interest;

@@ -12,7 +12,8 @@
 namespace blockrand::importers::osm {
 
 /// \throws NulInText
-Interest interest_of(model::OsmType type, const osmium::OSMObject& object);
+/// \param surroundings  as Interest has it
+Interest interest_of(model::OsmType type, const osmium::OSMObject& object, bool surroundings = false);
 
 /// Whether a relation is kept, and as what; its member ways are, too. \throws NulInText
 std::optional<RelationType> kept_as(const osmium::Relation& relation, const Interest& interest);

@@ -99,7 +99,52 @@ namespace blockrand::model {
   X(kJunction, "junction", "roundabout: one way")                                                                 \
   X(kOneway, "oneway", "direction of a street")                                                                   \
   X(kIndoor, "indoor", "a way inside a building: no street")                                                      \
-  X(kWidth, "width", "width of a passage, m")
+  X(kWidth, "width", "width of a passage, a street, a water, m")                                                  \
+  X(kLanes, "lanes", "of a street: its width")                                                                    \
+  X(kSurface, "surface", "what a street or place is paved with")                                                  \
+  X(kTracktype, "tracktype", "the same of tracks")                                                                \
+  X(kSidewalk, "sidewalk", "pavements beside a street")                                                           \
+  X(kSidewalkBoth, "sidewalk:both", "the same")                                                                   \
+  X(kSidewalkLeft, "sidewalk:left", "the same")                                                                   \
+  X(kSidewalkRight, "sidewalk:right", "the same")                                                                 \
+  X(kCycleway, "cycleway", "tracks for bicycles beside a street")                                                 \
+  X(kCyclewayBoth, "cycleway:both", "the same")                                                                   \
+  X(kCyclewayLeft, "cycleway:left", "the same")                                                                   \
+  X(kCyclewayRight, "cycleway:right", "the same")                                                                 \
+  X(kParkingLane, "parking:lane:", "parking lanes, the older scheme: both, left, right")                          \
+  X(kParkingBoth, "parking:both", "parking beside a street")                                                      \
+  X(kParkingLeft, "parking:left", "the same")                                                                     \
+  X(kParkingRight, "parking:right", "the same")                                                                   \
+  X(kFootway, "footway", "sidewalk, crossing: what a footway is")                                                 \
+  X(kCrossing, "crossing", "how a crossing is marked")                                                            \
+  X(kCrossingMarkings, "crossing:markings", "the same")                                                           \
+  X(kAreaHighway, "area:highway", "ground of a street as an area")                                                \
+  X(kManMade, "man_made", "bridges, piers, masts, towers")                                                        \
+  X(kPower, "power", "power lines, poles, towers, generators")                                                    \
+  X(kGeneratorSource, "generator:source", "wind: a wind turbine")                                                 \
+  X(kAeroway, "aeroway", "runways, taxiways, aprons")                                                             \
+  X(kAerialway, "aerialway", "cable ways: told, not modelled")                                                    \
+  X(kAdvertising, "advertising", "advertising columns and boards")                                                \
+  X(kEmergency, "emergency", "hydrants")                                                                          \
+  X(kTrafficSign, "traffic_sign", "a sign")                                                                       \
+  X(kPublicTransport, "public_transport", "platforms and stops")                                                  \
+  X(kPlayground, "playground", "play equipment: told, not modelled")                                              \
+  X(kGolf, "golf", "greens, tees, bunkers, fairways")                                                             \
+  X(kSport, "sport", "what a pitch is for")                                                                       \
+  X(kLeafType, "leaf_type", "needleleaved, broadleaved")                                                          \
+  X(kLeafCycle, "leaf_cycle", "evergreen, deciduous")                                                             \
+  X(kGenus, "genus", "of a tree: conifer or not")                                                                 \
+  X(kSpecies, "species", "the same")                                                                              \
+  X(kTaxon, "taxon", "the same")                                                                                  \
+  X(kDiameterCrown, "diameter_crown", "of a tree, m")                                                             \
+  X(kCircumference, "circumference", "of a trunk, m: the height of a tree where nobody tells it")                 \
+  X(kMaterial, "material", "of a wall, a fence, a bench")                                                         \
+  X(kColour, "colour", "of the same")                                                                             \
+  X(kFenceType, "fence_type", "what a fence looks like")                                                          \
+  X(kDirection, "direction", "where a bench, a sign faces")                                                       \
+  X(kStepCount, "step_count", "number of steps")                                                                  \
+  X(kGauge, "gauge", "of a railway, mm")                                                                          \
+  X(kShelter, "shelter", "a stop has one")
 // clang-format on
 
 namespace osm_key {
