@@ -109,7 +109,8 @@ enum class FeatureKind : std::uint32_t {
   roof_apex = 1u << 12,  ///< roof:apex=*
   place = 1u << 13,      ///< place=*
   boundary = 1u << 14,   ///< boundary=*
-  surrounding = 1u << 15,  ///< what only the surroundings of houses are made of: lamps, signs, masts, power lines, piers …
+  surrounding =
+      1u << 15,  ///< what only the surroundings of houses are made of: lamps, signs, masts, power lines, piers …
 };
 
 /// Any other object that the stages use.
