@@ -1,0 +1,117 @@
+// What mapped objects claim of the ground: streets as wide as they are, water, green, blocks.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "pipeline/context/context_extract.h"
+#include "pipeline/context/vicinity_finder.h"
+#include "pipeline/footprints/footprint_store.h"
+#include "pipeline/geometry/plane_partition.h"
+#include "pipeline/georef/projection.h"
+#include "pipeline/model/extract.h"
+#include "pipeline/model/surroundings.h"
+#include "pipeline/surroundings/catalogue.h"
+#include "pipeline/surroundings/kinds.h"
+
+namespace blockrand::surroundings {
+
+/// What the stage reads of an extract; outlives it and changes no more.
+struct SurroundingInputs {
+  const model::Extract& extract;
+  const footprints::FootprintStore& footprints;
+  const context::ContextExtract& context;
+  const context::VicinityFinder& vicinity;
+  const georef::Projection& projection;
+  const Catalogue& catalogue;
+};
+
+/// A feature that the surroundings are asked for.
+struct Thing {
+  std::uint32_t feature = 0;  ///< index into Extract::features
+  SurroundingKind kind = SurroundingKind::other;
+  std::optional<model::SurroundingState> hidden;
+};
+
+/// Whose a piece of ground is.
+struct GroundLabel {
+  bool building = false;  ///< no ground at all
+  model::GroundClass ground = model::GroundClass::land;
+  model::OsmId object;  ///< number 0: what stands around tells
+  model::SurroundingMaterial material = 0;
+  float offset = 0;  ///< m above the terrain
+  float trees_per_hectare = 0;
+};
+
+/// Claims of the ground of some squares, the strongest first, and whose they are.
+struct GroundClaims {
+  std::vector<geometry::AreaClaim> claims;
+  std::vector<GroundLabel> labels;  ///< AreaClaim::label indexes them
+};
+
+/// m. Kerbs of streets [RASt 06, FGSV 2006: 10 to 14 cm], and how far the surface of water lies below its banks: what is seen
+/// of a wall of a canal at least.
+inline constexpr float kKerb = 0.12f, kBank = 0.5f;
+
+/// m: how far from its line the ground of a street reaches at most, and buildings stand that make a street one of a town.
+inline constexpr double kStreetReach = 40, kBuiltUpReach = 25;
+
+/// Finds what claims the ground of a place. Read-only once made, safe to share between threads.
+class ClaimFinder {
+ public:
+  explicit ClaimFinder(const SurroundingInputs& inputs);
+
+  const std::vector<Thing>& things() const { return things_; }
+  /// The things at most `distance` metres from a box along both axes, ascending by feature.
+  std::vector<std::uint32_t> things_near(const geometry::PlanBox& box, double distance) const {
+    return boxes_.near(box, distance);
+  }
+  /// Of a thing: its rings or lines in metres on the grid, as mapped.
+  std::vector<std::vector<model::Point2>> lines_of(const Thing& thing) const;
+  /// The value of a tag of a feature.
+  TagOf tags_of(std::uint32_t feature) const;
+  /// Whether houses stand around a line.
+  bool is_built_up(std::span<const model::Point2> line) const;
+
+  /// Whether a feature's tags claim any ground.
+  bool claims_ground(const Thing& thing) const;
+  /// m: half of the opening of a barrier at one of its nodes: `street` where one of a street is, `gate` where a gate is, else 0.
+  double opening_at(std::int64_t node, double street, double gate) const;
+
+  /// The bridges that a bridge goes on in, as long as no third one meets them.
+  struct BridgeRun {
+    model::Point2 start, end;  ///< of the whole run
+    double length = 0;         ///< m of it
+    double before = 0;         ///< m of it before this bridge
+    bool reversed = false;     ///< the bridge is mapped against the run
+  };
+  BridgeRun bridge_run(const Thing& thing) const;
+
+  /// Everything that claims ground within a box.
+  GroundClaims claims_in(const geometry::PlanBox& box) const;
+
+ private:
+  struct Entry;
+  void add_street(const Thing& thing, std::vector<Entry>& out) const;
+  void add_railway(const Thing& thing, std::vector<Entry>& out) const;
+  void add_waterway(const Thing& thing, std::vector<Entry>& out) const;
+  void add_area(const Thing& thing, std::vector<Entry>& out) const;
+  void add_passages(const geometry::PlanBox& box, std::vector<Entry>& out) const;
+  void add_buildings(const geometry::PlanBox& box, std::vector<Entry>& out) const;
+  void add_blocks(const geometry::PlanBox& box, std::vector<Entry>& out) const;
+  /// How many ways of streets meet at a node.
+  std::size_t streets_at(std::int64_t node) const;
+
+  SurroundingInputs in_;
+  std::vector<Thing> things_;
+  geometry::BoxIndex boxes_;   ///< of things_
+  geometry::BoxIndex blocks_;  ///< of ContextExtract::blocks
+  geometry::BoxIndex passages_;
+  std::vector<std::pair<std::int64_t, std::uint32_t>> bridge_ends_;  ///< node and thing, ascending
+  std::vector<std::int64_t> gates_;                                  ///< nodes, ascending
+  std::vector<std::int64_t> street_nodes_;  ///< of ways of streets, an end once, a node within twice; ascending
+};
+
+}  // namespace blockrand::surroundings

@@ -1,0 +1,30 @@
+// Bodies along mapped lines: walls, fences, hedges, rails, decks of bridges.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "pipeline/model/surroundings.h"
+#include "pipeline/surroundings/ground_claims.h"
+
+namespace blockrand::surroundings {
+
+/// The ground at a place in plan.
+struct GroundAt {
+  bool building = false;
+  double height = 0;  ///< m above the height reference, of the surface that lies there
+};
+using GroundAtPlace = std::function<GroundAt(model::Point2)>;
+
+/// The bodies of a thing, or of those of its segments whose middles `is_own` takes; none for things that have none.
+///
+/// * barrier=*: a strip as high and wide as tags say, else as usual for its kind, which follows the ground; open where a gate or a
+///   street is one of its points; none within buildings.
+/// * railway=*: two rails of the gauge.
+/// * bridge=* of streets and railways: a deck between the grounds at both ends of the run of bridges that it belongs to, raised as
+///   far as its layer and a slope of 6 % allow where the ground below is not low already; with its strips, and railings.
+std::vector<model::SurroundingBody> line_bodies(const SurroundingInputs& in, const ClaimFinder& claims,
+                                                const Thing& thing, const std::function<bool(model::Point2)>& is_own,
+                                                const GroundAtPlace& ground);
+
+}  // namespace blockrand::surroundings

@@ -1,0 +1,237 @@
+#include "pipeline/surroundings/surroundings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "pipeline/georef/tiles.h"
+#include "pipeline/model/osm_keys.h"
+#include "pipeline/surroundings/ground_surfaces.h"
+#include "pipeline/surroundings/line_bodies.h"
+#include "pipeline/surroundings/placing.h"
+
+namespace blockrand::surroundings {
+namespace {
+
+using geometry::PlanBox;
+using model::Point2;
+using model::SurroundingState;
+
+/// The middle of the box of a thing's corners.
+Point2 middle_of(const std::vector<std::vector<Point2>>& lines) {
+  PlanBox box;
+  for (const auto& line : lines)
+    for (const Point2 p : line) box.include(p);
+  return box.empty() ? Point2{} : model::snap(box.centre());
+}
+
+bool claim_holds(const geometry::AreaClaim& claim, Point2 p) {
+  model::Polygon polygon;  // by parity: which ring is the outer one does not matter
+  for (const auto& points : claim.rings) {
+    model::Ring ring;
+    ring.points = points;
+    polygon.holes.push_back(std::move(ring));
+  }
+  return holds(polygon, p);
+}
+
+}  // namespace
+
+SurroundingsFinder::SurroundingsFinder(const SurroundingInputs& inputs, SurroundingOptions layers, HeightAt height,
+                                       double level, std::uint64_t seed)
+    : in_(inputs), layers_(layers), height_(std::move(height)), level_(level), seed_(seed), claims_(inputs) {}
+
+std::vector<SquareIndex> SurroundingsFinder::squares_of(model::TileId tile) const {
+  const georef::GeoBox bounds = georef::bounds(tile);
+  PlanBox box;
+  constexpr int kSteps = 8;  // parallels are bent in the plane
+  for (int i = 0; i <= kSteps; ++i)
+    for (int k = 0; k <= kSteps; ++k) {
+      const georef::LonLat at = bounds.at(i / static_cast<double>(kSteps), k / static_cast<double>(kSteps));
+      const Point2 p = in_.projection.forward(at.lon, at.lat);
+      if (std::isfinite(p.x) && std::isfinite(p.y)) box.include(p);
+    }
+  std::vector<SquareIndex> out;
+  if (box.empty()) return out;
+  const SquareIndex low = square_of({box.minimum.x - 1, box.minimum.y - 1});
+  const SquareIndex high = square_of({box.maximum.x + 1, box.maximum.y + 1});
+  for (std::int32_t y = low.y; y <= high.y; ++y)
+    for (std::int32_t x = low.x; x <= high.x; ++x) {
+      const georef::LonLat at = in_.projection.inverse(box_of({x, y}).centre());
+      const model::Location place{static_cast<std::int32_t>(std::lround(at.lon * 1e7)),
+                                  static_cast<std::int32_t>(std::lround(at.lat * 1e7))};
+      if (georef::tile_of(place, tile.level) == tile) out.push_back({x, y});
+    }
+  return out;
+}
+
+model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
+  model::Surroundings out;
+  const std::vector<SquareIndex> squares = squares_of(tile);
+  if (squares.empty()) return out;
+  PlanBox box;
+  for (const SquareIndex s : squares) box.include(box_of(s));
+  const std::set<SquareIndex> own(squares.begin(), squares.end());
+  const auto is_own = [&](Point2 p) { return own.contains(square_of(p)); };
+
+  const GroundClaims claims = claims_.claims_in(box);
+  const geometry::BoxIndex claim_boxes([&] {
+    std::vector<PlanBox> boxes;
+    for (const geometry::AreaClaim& claim : claims.claims) boxes.push_back(claim.box);
+    return boxes;
+  }());
+  GroundLabel land;
+  land.material = in_.catalogue.material("land");
+
+  // Mapped points and rows, and what becomes of each thing.
+  std::map<model::OsmId, SurroundingState> states;
+  std::map<model::OsmId, SurroundingKind> kinds;
+  std::vector<PlannedObject> planned;
+  std::vector<Point2> mapped_trees;
+  std::set<model::OsmId> with_ground;
+  const std::vector<std::uint32_t> near = claims_.things_near(box, 0);
+  std::map<model::OsmId, std::uint32_t> thing_of;
+  for (const std::uint32_t t : near) {
+    const Thing& thing = claims_.things()[t];
+    const model::Feature& feature = in_.extract.features[thing.feature];
+    thing_of[feature.id] = t;
+    const std::vector<std::vector<Point2>> lines = claims_.lines_of(thing);
+    const bool comes_here =
+        std::ranges::any_of(lines, [&](const auto& line) { return std::ranges::any_of(line, is_own); });
+    if (!comes_here) continue;
+    kinds[feature.id] = thing.kind;
+    if (thing.hidden) {
+      states[feature.id] = *thing.hidden;
+      continue;
+    }
+    states[feature.id] = SurroundingState::not_modelled;
+    const TagOf tag = claims_.tags_of(thing.feature);
+    if (!layers_.objects) continue;
+    const bool point = !feature.area && lines.size() == 1 && lines[0].size() == 1;
+    if (thing.kind == SurroundingKind::tree) {
+      if (point) {
+        if (auto tree = object_at(in_.catalogue, "tree", feature.id, lines[0][0], tag, seed_)) {
+          planned.push_back(*tree), mapped_trees.push_back(tree->place);
+        }
+      } else if (!feature.area) {
+        for (const auto& line : lines) {
+          if (line.size() < 2) continue;
+          for (PlannedObject& tree : row_of_trees(in_.catalogue, feature.id, line, tag, seed_))
+            mapped_trees.push_back(tree.place), planned.push_back(std::move(tree));
+        }
+      }
+      continue;
+    }
+    if (!point && !feature.area) continue;
+    const ObjectRule* rule = in_.catalogue.object_of(tag, feature.area);
+    if (rule == nullptr || rule->kind.empty()) continue;
+    if (auto object =
+            object_at(in_.catalogue, rule->kind, feature.id, point ? lines[0][0] : middle_of(lines), tag, seed_))
+      planned.push_back(std::move(*object));
+  }
+
+  const std::function<TagOf(model::OsmId)> tags_of_object = [&](model::OsmId id) {
+    const auto known = thing_of.find(id);
+    return known != thing_of.end() ? claims_.tags_of(claims_.things()[known->second].feature)
+                                   : TagOf([](std::string_view) { return std::string_view(); });
+  };
+  // The ground, square by square.
+  std::map<SquareIndex, SquareGround> grounds;
+  for (const SquareIndex square : squares) {
+    const SquareGround& ground = grounds.try_emplace(square, square, height_, level_).first->second;
+    GroundClaims of_square;
+    of_square.labels = claims.labels;
+    for (const std::uint32_t c : claim_boxes.near(box_of(square), 1)) of_square.claims.push_back(claims.claims[c]);
+    if (of_square.claims.empty()) continue;
+    std::vector<SquareSurface> surfaces = ground_surfaces(square, ground, of_square, land);
+    const auto is_mapped = [&](const SquareSurface& s) { return s.label < claims.labels.size(); };
+    if (std::ranges::none_of(surfaces, is_mapped)) continue;
+    for (const SquareSurface& s : surfaces)
+      if (is_mapped(s)) with_ground.insert(claims.labels[s.label].object);
+    if (layers_.objects)
+      for (PlannedObject& tree : scattered_trees(in_.catalogue, surfaces, claims, mapped_trees, tags_of_object, seed_))
+        planned.push_back(std::move(tree));
+    if (layers_.ground)
+      for (SquareSurface& s : surfaces) out.surfaces.push_back(std::move(s.surface));
+  }
+
+  const auto height_at = [&](Point2 p) {
+    const SquareIndex square = square_of(p);
+    const auto known = grounds.find(square);
+    return (known != grounds.end() ? known->second : grounds.try_emplace(square, square, height_, level_).first->second)
+        .at(p);
+  };
+  const GroundAtPlace ground_at = [&](Point2 p) {
+    PlanBox at;
+    at.include(p);
+    GroundAt found{false, height_at(p)};
+    for (const std::uint32_t c : claim_boxes.near(at, 0)) {  // the strongest first
+      const geometry::AreaClaim& claim = claims.claims[c];
+      if (!claim_holds(claim, p)) continue;
+      const GroundLabel& label = claims.labels[claim.label];
+      found.building = label.building;
+      found.height += static_cast<double>(label.offset);
+      break;
+    }
+    return found;
+  };
+  for (PlannedObject& object : planned) {
+    if (!is_own(object.place)) continue;
+    SurroundingState& state = states[object.object.object];
+    const GroundAt ground = ground_at(object.place);
+    if (ground.building) {
+      if (state == SurroundingState::not_modelled) state = SurroundingState::covered;
+      continue;
+    }
+    object.object.place = {object.place.x, object.place.y, model::snap(ground.height)};
+    state = SurroundingState::modelled;
+    out.objects.push_back(object.object);
+  }
+  if (layers_.bodies)
+    for (const std::uint32_t t : near) {
+      const Thing& thing = claims_.things()[t];
+      if (thing.hidden) continue;
+      const model::OsmId id = in_.extract.features[thing.feature].id;
+      std::vector<model::SurroundingBody> bodies = line_bodies(in_, claims_, thing, is_own, ground_at);
+      if (!bodies.empty()) states[id] = SurroundingState::modelled, kinds[id] = thing.kind;
+      for (model::SurroundingBody& body : bodies) out.bodies.push_back(std::move(body));
+    }
+  for (const model::OsmId id : with_ground)
+    if (const auto state = states.find(id); state != states.end()) state->second = SurroundingState::modelled;
+  for (const auto& [id, state] : states) {
+    const auto kind = kinds.find(id);
+    if (kind == kinds.end()) continue;
+    SurroundingState told = state;
+    // Ground that nobody sees lies under something stronger.
+    if (told == SurroundingState::not_modelled && layers_.ground &&
+        claims_.claims_ground(claims_.things()[thing_of.at(id)]))
+      told = SurroundingState::covered;
+    out.outcomes.push_back({id, told, static_cast<std::uint8_t>(kind->second)});
+  }
+  return out;
+}
+
+void SurroundingsFinder::pack(model::TileId tile, base::Packer& out) const {
+  const std::vector<SquareIndex> squares = squares_of(tile);
+  if (squares.empty()) return;
+  PlanBox box;
+  for (const SquareIndex s : squares) box.include(box_of(s));
+  const model::Extract& e = in_.extract;
+  for (const std::uint32_t t : claims_.things_near(box, kSurroundingsReach)) {
+    const model::Feature& feature = e.features[claims_.things()[t].feature];
+    out << feature.id << feature.kinds << feature.area;
+    for (const model::Tag& tag : e.tags_of(feature.tags)) out << e.strings.view(tag.key) << e.strings.view(tag.value);
+    for (const model::MappedRing& ring : e.rings_of(feature.rings))
+      for (const model::Location at : e.vertices_of(ring)) out << at.lon << at.lat;
+  }
+  const GroundClaims claims = claims_.claims_in(box);
+  for (const geometry::AreaClaim& claim : claims.claims) {
+    const GroundLabel& label = claims.labels[claim.label];
+    out << label.building << label.ground << label.object << label.offset;
+    for (const auto& ring : claim.rings)
+      for (const Point2 p : ring) out << p.x << p.y;
+  }
+}
+
+}  // namespace blockrand::surroundings
