@@ -35,6 +35,7 @@ struct OutputOptions {
   bool evidence = false;                ///< GLB, CityGML and CityJSON also say why each attribute has its value
   bool gzip = false;                    ///< CityGML as .gml.gz, CityJSON as .city.jsonl.gz
   bool precompress = false;             ///< tileset.json and GLBs of tiles have a .gz beside them
+  bool surroundings = false;            ///< they are asked for. Set by the build
   bool single_glb = false;              ///< also model.glb: the whole build in one frame
   Objects objects = Objects::building;  ///< what model.glb is made of
   bool single_cityjson = false;         ///< also model.city.json: the whole build as one CityJSON object

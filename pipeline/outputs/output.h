@@ -25,6 +25,7 @@
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/extract.h"
 #include "pipeline/model/region.h"
+#include "pipeline/model/surroundings.h"
 #include "pipeline/observation/imagery.h"
 #include "pipeline/outputs/explain/explanation.h"
 #include "pipeline/outputs/imagery/seen_outline.h"
@@ -57,6 +58,8 @@ struct OutputContext {
   std::optional<model::TileId> alone;                         ///< the one tile or area that is built, of a larger build
   std::span<const model::ReportRow> earlier;                  ///< rows from before the tiles, sorted
   std::function<std::string(std::string_view preset)> rule_file;  ///< as ExplainOptions has it; may be empty
+  /// What model::Surroundings of tiles number. Null: none are made.
+  const model::SurroundingCatalogue* surroundings = nullptr;
   int workers = 1;
   const base::Memo* memo = nullptr;  ///< where an earlier run left pictures; null: nothing is remembered
 };
@@ -64,6 +67,7 @@ struct OutputContext {
 /// A tile on which all stages have worked.
 struct FinishedTile {
   const model::Region& region;
+  const model::Surroundings* surroundings = nullptr;     ///< null: none are made
   std::size_t shard = 0;                                 ///< index
   std::string name;                                      ///< "15_17600_12900"
   bool has_parts = false;                                ///< a building has a body

@@ -9,6 +9,7 @@
 
 #include "pipeline/masses/roofscape.h"
 #include "pipeline/model/region.h"
+#include "pipeline/model/surroundings.h"
 
 namespace blockrand::outputs {
 
@@ -46,7 +47,8 @@ struct PartySide {
 struct TileStatistics {
   Statistics sums;
   std::vector<PartySide> party_sides;
-  std::vector<masses::SlopeEnd> slope_ends;  ///< whose neighbours are not in the tile
+  std::vector<masses::SlopeEnd> slope_ends;             ///< whose neighbours are not in the tile
+  std::vector<model::SurroundingOutcome> surroundings;  ///< of objects that come into the tile's squares
 };
 
 TileStatistics count_statistics(const model::Region& region);

@@ -105,6 +105,16 @@ attributes::AssignInputs assign_inputs(const BuildOptions& options, const BuildI
 
 // ---- the tiles
 
+/// Heights of the terrain for the surroundings; empty where there is none.
+surroundings::HeightAt terrain_height(const BuildInputs& inputs, const georef::Projection& projection) {
+  if (!inputs.terrain) return {};
+  return [&](model::Point2 place) -> std::optional<double> {
+    const georef::LonLat at = projection.inverse(place);
+    const auto range = inputs.terrain->range_along({&at, 1});
+    return range ? std::optional(range->lowest) : std::nullopt;
+  };
+}
+
 /// What the tiles add up to, taken in their order.
 struct Sums {
   std::vector<outputs::PartySide> party_sides;
@@ -125,6 +135,7 @@ struct Sums {
     party_sides.insert(party_sides.end(), tile.statistics.party_sides.begin(), tile.statistics.party_sides.end());
     slope_ends.insert(slope_ends.end(), tile.statistics.slope_ends.begin(), tile.statistics.slope_ends.end());
     outputs::add(record.statistics, tile.statistics.sums);
+    record.surroundings.take(tile.statistics.surroundings);
     if (open.keeps_whole) append_region(whole, std::move(tile.region), options.outputs.evidence);
   }
   void settle(BuildRecord& record) {
@@ -386,6 +397,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   const std::size_t in_flight = static_cast<std::size_t>(workers) * (record.area ? 1 : 2) + 2;
   Account account(told, std::move(report.rows));
   outputs::OutputOptions output_options = options.outputs;
+  output_options.surroundings = options.surroundings.any();
   output_options.imagery = imagery.observations() != nullptr;
   output_options.imagery_pictures = output_options.imagery && options.outputs.report && !inputs.images.empty();
   const outputs::OutputContext output_context{
@@ -408,6 +420,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
       .alone = tile ? std::optional(tile->id) : std::nullopt,
       .earlier = account.earlier(),
       .rule_file = [&](std::string_view preset) { return inputs.rule_file(preset); },
+      .surroundings = inputs.surroundings ? &inputs.surroundings->shown() : nullptr,
       .workers = workers,
       .memo = memo ? &*memo : nullptr};
   const OpenOutputs open(output_context);
@@ -447,9 +460,20 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
                                .has_terrain = inputs.terrain.has_value(),
                                .ground = [&](const model::Building& building) { return ground.under(building); },
                                .context_time = context_time};
+  std::optional<surroundings::SurroundingsFinder> finder;
+  if (inputs.surroundings)
+    finder.emplace(surroundings::SurroundingInputs{.extract = extract,
+                                                   .footprints = repaired.footprints,
+                                                   .context = context,
+                                                   .vicinity = vicinity,
+                                                   .projection = projection,
+                                                   .catalogue = *inputs.surroundings},
+                   options.surroundings, terrain_height(inputs, projection), options.ground_height.value_or(0),
+                   options.seed);
+  const surroundings::SurroundingsFinder* around = finder ? &*finder : nullptr;
   std::optional<TileKeys> keys;
   if (tiles_are_kept(cache.get(), inputs, open, progress))
-    keys.emplace(tile_inputs, inputs, shared_key(options, inputs, record), account.earlier(), open.list);
+    keys.emplace(tile_inputs, inputs, around, shared_key(options, inputs, record), account.earlier(), open.list);
   if (options.plan) {
     progress.begin("look for kept tiles");
     plan_tiles(todo, keys ? &*keys : nullptr, cache.get(), workers, summary);
@@ -472,7 +496,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
       return;
     }
     if (!keys) {
-      slot = work_on_tile(*t.shard, t.place, tile_inputs, open, account, told);
+      slot = work_on_tile(*t.shard, t.place, tile_inputs, around, open, account, told);
       return;
     }
     const TileKey key = keys->key(*t.shard, t.place);
@@ -481,7 +505,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
     if (kept) {
       slot = std::move(*kept);
     } else {
-      slot = work_on_tile(*t.shard, t.place, tile_inputs, open, account, told);
+      slot = work_on_tile(*t.shard, t.place, tile_inputs, around, open, account, told);
       slot.why = why_built(*cache, name, key);
       if (slot.may_be_kept) keep_tile(key.key, slot, open, told, folder.staging_path(), *cache);
     }
@@ -505,6 +529,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   base::ordered_parallel(todo.size(), workers, in_flight, work, consume, load);
   sums.settle(record);
   warn_of_terrain(inputs, progress);
+  if (finder && !tile) record.surroundings_elsewhere = record.surroundings.elsewhere(finder->claims(), extract);
   account.close(area ? std::nullopt : tile, shards, looked_into, summary);
   if (!options.measure) refuse_shrunk(options, summary, place.earlier);
 
@@ -548,6 +573,9 @@ BuildSummary build_area(const BuildOptions& options, const AreaPart& part, base:
 }
 
 BuildSummary build(const BuildOptions& options, base::Progress& progress) {
+  if (options.surroundings.any() && (options.areas > 0 || !options.area.empty()))
+    throw base::UsageError(
+        "--surroundings are made in a build of the whole, not yet in areas: leave out --areas and --area");
   if (options.areas > 0) return build_in_areas(options, progress);
   if (options.memory_limit > 0 && options.settings.empty())  // a region's settings hold for builds of both kinds
     throw base::UsageError("--memory-limit says how many areas are built at a time: it needs --areas");

@@ -55,6 +55,7 @@ BuildInputs::BuildInputs(const BuildOptions& options)
   if (options.lod >= 3)
     grammars.emplace(
         facades::read_grammars(options.configs, rules.book.presets, importers::reference::read_triangle_model));
+  if (options.surroundings.any()) surroundings.emplace(options.configs + "/surroundings.toml");
   overrides = open_overrides(options.overrides, defaults, rules.book);
   if (options.lod >= 2) landmarks = read_landmarks(overrides);
 }
@@ -85,6 +86,7 @@ std::vector<InputFile> input_files(const BuildOptions& options, const BuildInput
       const std::filesystem::path file(path);
       configs.emplace_back((file.parent_path().filename() / file.filename()).generic_string(), path);
     }
+  if (inputs.surroundings) configs.emplace_back("surroundings.toml", options.configs + "/surroundings.toml");
   for (const auto& [name, path] : configs) {
     files.push_back(input_file("config", path));
     files.back().path = name;

@@ -78,6 +78,20 @@ Json counts_json(const BuildRecord& r) {
   return counts;
 }
 
+/// By kind: how many are in each state; those of no tile are `elsewhere`.
+Json surroundings_json(const BuildRecord& r) {
+  Json out = Json::object();
+  const surroundings::SurroundingCounts counts = r.surroundings.counts();
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    Json of_kind = Json::object();
+    for (std::size_t s = 0; s < counts[k].size(); ++s)
+      if (counts[k][s] > 0) of_kind[std::string(model::kSurroundingStateNames[s])] = counts[k][s];
+    if (r.surroundings_elsewhere[k] > 0) of_kind["elsewhere"] = r.surroundings_elsewhere[k];
+    if (!of_kind.empty()) out[std::string(surroundings::kSurroundingKindNames[k])] = std::move(of_kind);
+  }
+  return out;
+}
+
 Json statistics_json(const outputs::Statistics& t) {
   Json j = {{"footprint_area_m2", rounded(t.footprint_area)},      {"volume_m3", rounded(t.volume)},
             {"outer_wall_area_m2", rounded(t.outer_wall_area)},    {"party_walls", t.party_walls},
@@ -205,6 +219,7 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
   j["issues"] = Json::object();
   for (const auto& [code, count] : r.summary.issues) j["issues"][code] = count;
   j["statistics"] = statistics_json(r.statistics);
+  if (!r.surroundings.empty()) j["surroundings"] = surroundings_json(r);
   j["files"] = Json::object();
   for (const base::PublishedFile& f : r.files) j["files"][f.path] = {{"bytes", f.bytes}, {"sha256", f.sha256}};
   return j.dump(1) + "\n";

@@ -1,6 +1,7 @@
 // build.json and run.json: what a build tells about itself.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "pipeline/outputs/statistics.h"
 #include "pipeline/run/build.h"
 #include "pipeline/run/region_facts.h"
+#include "pipeline/surroundings/account.h"
 #include "styles/elements/element_catalogue.h"
 
 namespace blockrand::run {
@@ -48,6 +50,9 @@ struct BuildRecord {
   footprints::RepairTotals repair;
   BuildSummary summary;
   outputs::Statistics statistics;
+  surroundings::SurroundingAccount surroundings;
+  /// Things around houses that lie in no tile with buildings, by kind. Of a build of the whole.
+  std::array<std::uint64_t, surroundings::kSurroundingKindCount> surroundings_elsewhere{};
   model::ExtractCounts counts;
   std::vector<base::PublishedFile> files;  ///< in path order
 };

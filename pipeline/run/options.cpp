@@ -194,6 +194,19 @@ base::OptionTable<B> place_and_ground() {
             .help = "what the raster's heights are above, where it does not say so itself: sea-level (taken for "
                     "EGM96), ellipsoid, or a vertical coordinate system such as EPSG:7837"},
            &B::terrain_height_reference),
+      custom<B>(
+          {.name = "surroundings",
+           .key = "surroundings",
+           .argument = "LAYERS",
+           .help = "what stands and lies around the houses: on, off, or some of ground, bodies, objects with commas "
+                   "between them (docs/surroundings.md)",
+           .record = OptionRecord::yes},
+          [](B& b, const std::string& text) { b.surroundings = surroundings::parse_surroundings(text); },
+          [](const B& b) { return surroundings::show_surroundings(b.surroundings); },
+          [](const B& b) {
+            return b.surroundings.any() ? std::optional(RecordValue(surroundings::show_surroundings(b.surroundings)))
+                                        : std::nullopt;
+          }),
       number({.name = "ground-height",
               .key = "ground_height",
               .argument = "METRES",

@@ -12,6 +12,7 @@
 #include "pipeline/footprints/repair/options.h"
 #include "pipeline/observation/options.h"
 #include "pipeline/outputs/options.h"
+#include "pipeline/surroundings/options.h"
 
 namespace blockrand::importers::osm {
 class ChangedObjects;
@@ -56,6 +57,7 @@ struct BuildOptions {
   outputs::OutputOptions outputs;
   repair::RepairOptions repair;
   attributes::GenerateOptions generate;
+  surroundings::SurroundingOptions surroundings;
 };
 
 /// How users set them: the main section, and those of the stages whose options a build holds.

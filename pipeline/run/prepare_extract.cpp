@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "importers/osm/read_extract.h"
@@ -11,6 +13,7 @@
 #include "pipeline/base/parallel.h"
 #include "pipeline/evidence/region_priors.h"
 #include "pipeline/footprints/load.h"
+#include "pipeline/georef/tiles.h"
 
 namespace blockrand::run {
 
@@ -33,6 +36,32 @@ void check_scale(const georef::Projection& projection, const georef::Crs& crs, g
   progress.warn(fmt::format("{}: lengths are {:.1f} % off. {} fits better", what, 100 * off, better));
 }
 
+/// Tiles without buildings between those that have some, as far as something is mapped in them: the surroundings need no house.
+void add_empty_tiles(const model::Extract& extract, std::vector<footprints::Shard>& shards) {
+  if (shards.empty()) return;
+  const int level = shards.front().tile.level;
+  model::TileId low = shards.front().tile, high = low;
+  std::set<model::TileId> known;
+  for (const footprints::Shard& shard : shards) {
+    known.insert(shard.tile);
+    low.x = std::min(low.x, shard.tile.x), low.y = std::min(low.y, shard.tile.y);
+    high.x = std::max(high.x, shard.tile.x), high.y = std::max(high.y, shard.tile.y);
+  }
+  using enum model::FeatureKind;
+  for (const model::Feature& feature : extract.features) {
+    if (!feature.is(street) && !feature.is(land_use) && !feature.is(water) && !feature.is(railway) &&
+        !feature.is(tree) && !feature.is(surrounding))
+      continue;
+    for (const model::MappedRing& ring : extract.rings_of(feature.rings))
+      for (const model::Location at : extract.vertices_of(ring)) {
+        const model::TileId tile = georef::tile_of(at, level);
+        if (tile.x < low.x || tile.x > high.x || tile.y < low.y || tile.y > high.y) continue;
+        if (known.insert(tile).second) shards.push_back({tile, {}});
+      }
+  }
+  std::ranges::sort(shards, {}, &footprints::Shard::tile);
+}
+
 }  // namespace
 
 LocatedExtract locate_extract(const BuildOptions& options, const std::optional<TileChoice>& tile,
@@ -50,6 +79,7 @@ LocatedExtract locate_extract(const BuildOptions& options, const std::optional<T
     }
     progress.advance_to(static_cast<std::uint64_t>((done + fraction * left / 2) * static_cast<double>(kScale)));
   };
+  read_options.surroundings = options.surroundings.any();
   read_options.bbox = tile ? tile->window : options.bbox;
   if (tile) read_options.parts = tile->parts, read_options.touching = true;
   model::Extract extract = store && tile ? store->read(read_options, tile->placeless)
@@ -92,6 +122,7 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
   model::Report report;
   std::vector<footprints::Shard> shards =
       footprints::make_shards(extract, report, tile ? tile->tile_level : footprints::kTileLevel);
+  if (options.surroundings.any()) add_empty_tiles(extract, shards);
   repair::KeptNodes kept(extract);
   footprints::RepairedExtract repaired =
       footprints::repair_extract(extract, shards, located.projection, kept, options.repair, workers, progress, memo);

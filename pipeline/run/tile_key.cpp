@@ -83,6 +83,7 @@ struct TileKeys::Impl {
   std::span<const std::unique_ptr<outputs::Output>> outputs;
   std::map<std::string, std::string, std::less<>> grammars;  ///< hash of the rule files, by preset
   const facades::GrammarLibrary* library = nullptr;          ///< null: there are no facades
+  const surroundings::SurroundingsFinder* around_houses = nullptr;
 
   void pack_rules(std::string_view preset, Packer& out) const {
     const auto rules = grammars.find(preset);
@@ -175,9 +176,11 @@ struct TileKeys::Impl {
   }
 };
 
-TileKeys::TileKeys(const TileInputs& inputs, const BuildInputs& files, std::string shared,
-                   std::span<const model::ReportRow> earlier, std::span<const std::unique_ptr<outputs::Output>> outputs)
-    : impl_(new Impl{inputs, std::move(shared), earlier, outputs, {}, files.grammars ? &*files.grammars : nullptr}) {
+TileKeys::TileKeys(const TileInputs& inputs, const BuildInputs& files, const surroundings::SurroundingsFinder* around,
+                   std::string shared, std::span<const model::ReportRow> earlier,
+                   std::span<const std::unique_ptr<outputs::Output>> outputs)
+    : impl_(new Impl{
+          inputs, std::move(shared), earlier, outputs, {}, files.grammars ? &*files.grammars : nullptr, around}) {
   std::map<std::string, std::string> hashes;  // by path
   for (const districts::Preset& preset : files.rules.book.presets) {
     if (!files.grammars) break;
@@ -250,6 +253,8 @@ TileKey TileKeys::key(std::size_t shard, std::size_t place) const {
           if (place.x == place.x && place.y == place.y) box.include(place);
         }
   if (!box.empty()) in.pack_around(box, around);
+
+  if (in.around_houses) in.around_houses->pack(tiles.shards[shard].tile, around);
 
   TileKey key;
   std::string hashes;

@@ -13,6 +13,7 @@
 #include "pipeline/outputs/output.h"
 #include "pipeline/run/build_inputs.h"
 #include "pipeline/run/tile_stages.h"
+#include "pipeline/surroundings/surroundings.h"
 
 namespace blockrand::run {
 
@@ -48,8 +49,10 @@ class TileKeys {
   /// \param inputs   of the tiles; outlives the keys, as do the others
   /// \param shared   what all tiles depend on alike (shared_key)
   /// \param earlier  rows of what came before the tiles, sorted by object
-  TileKeys(const TileInputs& inputs, const BuildInputs& files, std::string shared,
-           std::span<const model::ReportRow> earlier, std::span<const std::unique_ptr<outputs::Output>> outputs);
+  /// \param around  null: no surroundings
+  TileKeys(const TileInputs& inputs, const BuildInputs& files, const surroundings::SurroundingsFinder* around,
+           std::string shared, std::span<const model::ReportRow> earlier,
+           std::span<const std::unique_ptr<outputs::Output>> outputs);
   ~TileKeys();
 
   /// \param place  index of the tile among the shards that outputs know

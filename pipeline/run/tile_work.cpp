@@ -80,16 +80,21 @@ void write_outputs(const outputs::FinishedTile& tile, const OpenOutputs& open, b
 
 }  // namespace
 
-TileResult work_on_tile(std::size_t shard, std::size_t place, const TileInputs& inputs, const OpenOutputs& open,
-                        const Account& account, const model::Extract& told) {
+TileResult work_on_tile(std::size_t shard, std::size_t place, const TileInputs& inputs,
+                        const surroundings::SurroundingsFinder* around, const OpenOutputs& open, const Account& account,
+                        const model::Extract& told) {
   const auto start = std::chrono::steady_clock::now();
   TileResult result;
   model::Region region = run_tile(shard, inputs);
   result.may_be_kept = positions_as_measured(region, inputs.repaired.first[shard], inputs.styles.facts);
   result.outcomes = decide_outcomes(region, inputs.lod);
   result.statistics = outputs::count_statistics(region);
+  model::Surroundings surroundings;
+  if (around) surroundings = around->around(region.tile);
+  result.statistics.surroundings = std::move(surroundings.outcomes);
   const outputs::FinishedTile tile{
       .region = region,
+      .surroundings = around ? &surroundings : nullptr,
       .shard = place,
       .name = outputs::tile_name(region.tile),
       .has_parts = std::ranges::any_of(region.buildings, [](const model::Building& b) { return !b.parts.empty(); }),

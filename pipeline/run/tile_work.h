@@ -13,6 +13,7 @@
 #include "pipeline/run/outcome.h"
 #include "pipeline/run/tile_stages.h"
 #include "pipeline/run/work_cache.h"
+#include "pipeline/surroundings/surroundings.h"
 
 namespace blockrand::run {
 
@@ -42,8 +43,10 @@ struct TileResult {
 /// All stages and all outputs of a tile. Safe for different tiles at the same time. Its outcomes are those of objects of `told`.
 /// \param place  index of the tile among the shards that outputs know
 /// \param told   that of the account; for an area not that of the inputs
-TileResult work_on_tile(std::size_t shard, std::size_t place, const TileInputs& inputs, const OpenOutputs& open,
-                        const Account& account, const model::Extract& told);
+/// \param around  null: no surroundings
+TileResult work_on_tile(std::size_t shard, std::size_t place, const TileInputs& inputs,
+                        const surroundings::SurroundingsFinder* around, const OpenOutputs& open, const Account& account,
+                        const model::Extract& told);
 
 /// Keeps a tile's work for the next run. Safe for different tiles at the same time. \param folder  where its files lie
 void keep_tile(const std::string& key, const TileResult& result, const OpenOutputs& open, const model::Extract& extract,

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <mutex>
 #include <numeric>
 #include <span>
 #include <stdexcept>
@@ -19,6 +22,7 @@
 #include "pipeline/georef/tile_frame.h"
 #include "pipeline/georef/tiles.h"
 #include "pipeline/outputs/gltf/glb_writer.h"
+#include "pipeline/outputs/gltf/surroundings_glb.h"
 #include "pipeline/outputs/tileset/tileset.h"
 
 namespace blockrand::outputs {
@@ -27,6 +31,7 @@ namespace {
 using model::Point3;
 
 constexpr const char* kModelFile = "model.glb";
+constexpr const char* kSurroundingsFile = "surroundings.glb";
 /// m. Farther from its origin, the single-precision vertices of model.glb are coarser than 4 mm.
 constexpr double kFineModelRadius = 65'536;
 
@@ -81,6 +86,25 @@ void write_coarser_level(const Glb& glb, const std::string& place, TileEntry& en
   write_served(entry.coarser.back().uri, glb.bytes, context.options, context.folder, files);
   entry.min = {std::min(entry.min.x, glb.min.x), std::min(entry.min.y, glb.min.y), std::min(entry.min.z, glb.min.z)};
   entry.max = {std::max(entry.max.x, glb.max.x), std::max(entry.max.y, glb.max.y), std::max(entry.max.z, glb.max.z)};
+}
+
+/// Writes the surroundings of a tile beside its buildings, in their frame.
+void write_surroundings(const FinishedTile& tile, const std::string& place, const GlbOptions& options, bool alone,
+                        TileEntry& entry, const OutputContext& context, std::vector<base::PublishedFile>& files) {
+  if (tile.surroundings == nullptr || context.surroundings == nullptr || tile.surroundings->empty()) return;
+  const Glb glb = write_surroundings_glb(*tile.surroundings, *context.surroundings, options);
+  if (glb.triangles == 0) return;
+  entry.surroundings = {place + "_surroundings.glb", glb.min, glb.max};
+  write_served(entry.surroundings->uri, glb.bytes, context.options, context.folder, files);
+  const auto widen = [&](Point3& low, Point3& high) {
+    low = {std::min(low.x, glb.min.x), std::min(low.y, glb.min.y), std::min(low.z, glb.min.z)};
+    high = {std::max(high.x, glb.max.x), std::max(high.y, glb.max.y), std::max(high.z, glb.max.z)};
+  };
+  if (alone) {
+    entry.min = glb.min, entry.max = glb.max;
+  } else {
+    widen(entry.min, entry.max);
+  }
 }
 
 /// Geodetic bounds of a box in a local frame, from its corners and the middle of its underside, which lies deepest.
@@ -193,7 +217,9 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
   const model::Region& region = tile.region;
   const model::TileId id = region.tile;
   const GeoidPlane plane = geoid_plane(context, georef::centre(id));
-  const double origin_height = model::snap(lowest_ground(region) + plane.at);
+  double ground = lowest_ground(region);
+  if (region.buildings.empty() && tile.surroundings) ground = lowest_point(*tile.surroundings).value_or(0);
+  const double origin_height = model::snap(ground + plane.at);
   const georef::TileFrame frame(context.projection, id, origin_height);
   GlbOptions options = glb_options(context, frame.frame());
   options.frame.to_enu = [&](std::span<const Point3> in, std::span<Point3> out) {
@@ -210,7 +236,6 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
       roofs = write_glb(region, coarser);
     }
   });
-  if (glb.triangles == 0) return std::nullopt;
   TileEntry entry;
   entry.id = id;
   entry.uri = tile_glb_path(id);
@@ -218,7 +243,10 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
   entry.max = glb.max;
   const std::string place = entry.uri.substr(0, entry.uri.size() - std::string_view(".glb").size());
   const auto most = static_cast<std::size_t>(context.options.max_glb_bytes);
-  if (most > 0 && glb.bytes.size() > most) {
+  const bool empty = glb.triangles == 0;
+  if (empty) {
+    entry.uri.clear();
+  } else if (most > 0 && glb.bytes.size() > most) {
     std::string().swap(glb.bytes);  // room for the pieces
     PieceWriter(tile, options, place, most, entry, context).write();
     entry.uri.clear();
@@ -226,13 +254,15 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
     write_served(entry.uri, glb.bytes, context.options, context.folder, tile.files);
   }
   entry.enu_to_ecef = options.frame.enu_to_ecef;
-  write_coarser_level(roofs, place, entry, context, tile.files);
+  if (!empty) write_coarser_level(roofs, place, entry, context, tile.files);
+  write_surroundings(tile, place, options, empty, entry, context, tile.files);
+  if (empty && !entry.surroundings) return std::nullopt;
   set_bounds(entry, frame.frame());
   return entry;
 }
 
-/// Writes model.glb.
-void write_model(const FinishedBuild& build, const OutputContext& context) {
+/// Writes model.glb, and surroundings.glb in the same frame. \param around  empty: none
+void write_model(const FinishedBuild& build, const model::Surroundings& around, const OutputContext& context) {
   const model::Region& whole = build.whole;
   const double origin_height = model::snap(lowest_ground(whole));
   const GeoidPlane plane = geoid_plane(context, context.centre);
@@ -249,6 +279,14 @@ void write_model(const FinishedBuild& build, const OutputContext& context) {
       out[i] = frame.to_local(g.lon, g.lat, in[i].z + n);
     }
   };
+  if (!around.empty() && context.surroundings != nullptr) {
+    GlbOptions baked = o;  // editors know no instances
+    baked.instancing = Instancing::baked;
+    const Glb ground = write_surroundings_glb(around, *context.surroundings, baked);
+    build.tell(kSurroundingsFile, fmt::format("{} triangles, {}", base::with_thousands(ground.triangles),
+                                              base::with_byte_unit(ground.bytes.size())));
+    build.files.push_back(context.folder.write(kSurroundingsFile, ground.bytes));
+  }
   Glb glb;
   try {
     glb = write_glb(whole, o);
@@ -279,7 +317,11 @@ class GltfOutput : public OutputOf<std::optional<TileEntry>> {
   explicit GltfOutput(const OutputContext& context) : context_(context), tiled_(context.options.writes("gltf")) {}
 
   std::any write_tile(FinishedTile& tile) const override {
-    return tiled_ && tile.has_parts ? write_glbs(tile, context_) : std::nullopt;
+    if (context_.options.single_glb && tile.surroundings != nullptr && !tile.surroundings->empty()) {
+      const std::lock_guard lock(mutex_);
+      around_[tile.region.tile] = *tile.surroundings;
+    }
+    return tiled_ && (tile.has_parts || tile.surroundings != nullptr) ? write_glbs(tile, context_) : std::nullopt;
   }
   void take(const FinishedTile&, std::any product) override {
     if (auto& entry = *std::any_cast<std::optional<TileEntry>>(&product)) tiles_.push_back(std::move(*entry));
@@ -293,13 +335,23 @@ class GltfOutput : public OutputOf<std::optional<TileEntry>> {
       options.attribution = attribution(context_);
       write_served("tileset.json", write_tileset(tiles_, options), context_.options, context_.folder, build.files);
     }
-    if (context_.options.single_glb) write_model(build, context_);
+    if (!context_.options.single_glb) return;
+    model::Surroundings around;
+    for (auto& [tile, of_tile] : around_) {
+      std::ranges::move(of_tile.surfaces, std::back_inserter(around.surfaces));
+      std::ranges::move(of_tile.bodies, std::back_inserter(around.bodies));
+      std::ranges::move(of_tile.objects, std::back_inserter(around.objects));
+    }
+    around_.clear();
+    write_model(build, around, context_);
   }
 
  private:
   const OutputContext& context_;
   bool tiled_ = true;
   std::vector<TileEntry> tiles_;
+  mutable std::mutex mutex_;
+  mutable std::map<model::TileId, model::Surroundings> around_;  ///< for model.glb, of which no tile is kept
 };
 
 }  // namespace
@@ -311,7 +363,9 @@ OutputFormat gltf_output() {
           .places = {{"tileset.json", "3D Tiles, for CesiumJS, QGIS 3.34+, Unreal, ...; single tiles are in tiles/",
                       [](const OutputOptions& o, std::uint64_t) { return o.writes("gltf"); }},
                      {kModelFile, "the whole build in one file, for Blender and other editors",
-                      [](const OutputOptions& o, std::uint64_t) { return o.single_glb; }}},
+                      [](const OutputOptions& o, std::uint64_t) { return o.single_glb; }},
+                     {kSurroundingsFile, "what stands around the houses, in the frame of model.glb",
+                      [](const OutputOptions& o, std::uint64_t) { return o.single_glb && o.surroundings; }}},
           .manual = {{"tileset.json, tiles/",
                       "3D Tiles 1.1: one GLB per tile, with the attributes of every building as feature metadata"}},
           .asked = [](const OutputOptions& o) { return o.writes("gltf") || o.single_glb; },

@@ -163,19 +163,36 @@ class Writer {
   /// The tile's levels, one inside the other in the same box; the outermost has the transform.
   void leaf(const TileEntry& tile) {
     assert(tile.id.level == leaves_.front().tile->id.level);
+    if (!tile.surroundings) return buildings(tile, true);
+    level(tile, true, options_.parent_error);
+    out_ += ",\"refine\":\"ADD\",\"children\":[{";
+    box(tile.surroundings->min, tile.surroundings->max);
+    out_ += ',';
+    geometric_error(0);
+    content(tile.surroundings->uri);
+    out_ += '}';
+    if (!tile.uri.empty() || !tile.pieces.empty()) {
+      out_ += ',';
+      buildings(tile, false);
+    }
+    out_ += "]}";
+  }
+
+  /// \param outermost  it has the transform
+  void buildings(const TileEntry& tile, bool outermost) {
     for (std::size_t i = 0; i < tile.coarser.size(); ++i) {
-      level(tile, i == 0, tile.coarser[i].geometric_error);
+      level(tile, outermost && i == 0, tile.coarser[i].geometric_error);
       out_ += ",\"refine\":\"REPLACE\"";
       content(tile.coarser[i].uri);
       out_ += ",\"children\":[";
     }
     if (tile.pieces.empty()) {
-      level(tile, tile.coarser.empty(), 0);
+      level(tile, outermost && tile.coarser.empty(), 0);
       content(tile.uri);
       out_ += '}';
     } else {
       if (tile.coarser.empty()) {
-        level(tile, true, options_.parent_error);
+        level(tile, outermost, options_.parent_error);
         out_ += ",\"children\":[";
       }
       for (const TilePiece& piece : tile.pieces) {

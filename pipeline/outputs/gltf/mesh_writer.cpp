@@ -1,0 +1,267 @@
+#include "pipeline/outputs/gltf/mesh_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipeline/outputs/gltf/axes.h"
+#include "pipeline/outputs/gltf/face_order.h"
+#include "pipeline/outputs/gltf/linear_light.h"
+#include "pipeline/outputs/gltf/meshopt.h"
+#include "pipeline/outputs/number_text.h"
+
+namespace blockrand::outputs {
+namespace {
+
+constexpr std::string_view kPiecesName = "elements";
+
+/// Steps; 1 cm: vertices above each other lean by less than that, and windows are wider.
+constexpr double kColumn = kTileStepsPerMetre / 100;
+
+/// Appends vertices and the accessors of the primitives to a document.
+class MeshWriter {
+ public:
+  /// Takes primitives out of `mesh` as it writes them.
+  MeshWriter(GlbDocument& document, Mesh& mesh, std::size_t features, std::string_view label)
+      : document_(document), mesh_(mesh), label_(label), wide_features_(features > 0xFFFF) {
+    far_ = std::max({std::fabs(mesh.min.x), std::fabs(mesh.min.y), std::fabs(mesh.min.z), std::fabs(mesh.max.x),
+                     std::fabs(mesh.max.y), std::fabs(mesh.max.z)}) > kFinestReach;
+  }
+
+  /// A node of the solids, and one of the pieces of elements, by whose name readers know them apart.
+  /// \param material  for which `table` tells where classes are \return how many triangles it wrote
+  std::size_t write(int material, const MaterialTable& table) {
+    std::size_t vertices = 0;
+    for (const auto* list : {&mesh_.primitives, &mesh_.pieces})
+      for (const MeshPrimitive& p : *list) vertices += p.vertices.size();
+    for (const Stream stream : {Stream::colours, Stream::normals, far_ ? Stream::far_positions : Stream::tile_positions,
+                                Stream::texture_places, wide_features_ ? Stream::wide_features : Stream::features})
+      document_.expect(stream, vertices);
+    return write(mesh_.primitives, "", material, table, Order::along_faces) +
+           write(mesh_.pieces, kPiecesName, material, table, Order::vertex_cache);
+  }
+
+ private:
+  enum class Order : std::uint8_t { along_faces, vertex_cache };
+
+  std::size_t write(std::vector<MeshPrimitive>& primitives, std::string_view name, int material,
+                    const MaterialTable& table, Order order) {
+    std::string json = "{\"primitives\":[";
+    std::size_t triangles = 0;
+    for (MeshPrimitive& all : primitives) {
+      const MeshPrimitive p = packed(all, order);
+      all = {};
+      if (p.indices.empty()) continue;
+      const bool round = !far_ && (order == Order::vertex_cache || !rounding_turns(p));
+      triangles += p.indices.size() / 3;
+      if (json.back() == '}') json += ',';
+      json += "{\"attributes\":{";
+      attribute(json, "COLOR_0", add_colours(p));
+      attribute(json, "NORMAL", add_normals(p));
+      attribute(json, "POSITION", add_positions(p, round));
+      attribute(json, "TEXCOORD_0", add_classes(p, table));
+      attribute(json, "_FEATURE_ID_0", add_features(p));
+      json += "},\"extensions\":{\"EXT_mesh_features\":" + feature_ids(p) + "},\"indices\":";
+      append_number(json, std::int64_t{add_indices(p)});
+      json += ",\"material\":";
+      append_number(json, std::int64_t{material});
+      json += '}';
+    }
+    if (triangles == 0) return 0;
+    const int mesh = document_.add_mesh(json + "]}");
+    json = "{\"mesh\":";
+    append_number(json, std::int64_t{mesh});
+    if (!name.empty()) {
+      json += ",\"name\":";
+      append_json(json, name);
+    }
+    document_.add_root(document_.add_node(json + '}'));
+    return triangles;
+  }
+
+  static void attribute(std::string& json, const char* name, int accessor) {
+    if (json.back() != '{') json += ',';
+    json += '"';
+    json += name;
+    json += "\":";
+    append_number(json, std::int64_t{accessor});
+  }
+
+  static std::int64_t whole(double metres) {
+    return static_cast<std::int64_t>(std::nearbyint(metres * kTileStepsPerMetre));
+  }
+
+  /// Whether a triangle loses its area or looks the other way once its corners are whole steps: a sliver along an
+  /// outline of thousands of corners. Rounding it would fold the surface, and leaving it out would open it.
+  bool rounding_turns(const MeshPrimitive& p) const {
+    for (std::size_t t = 0; t + 2 < p.indices.size(); t += 3) {
+      std::array<std::array<double, 3>, 2> before{}, after{};
+      const model::Point3& a = mesh_.positions[p.vertices[p.indices[t]].position];
+      for (std::size_t k = 0; k < 2; ++k) {
+        const model::Point3& b = mesh_.positions[p.vertices[p.indices[t + 1 + k]].position];
+        before[k] = {b.x - a.x, b.y - a.y, b.z - a.z};
+        after[k] = {static_cast<double>(whole(b.x) - whole(a.x)), static_cast<double>(whole(b.y) - whole(a.y)),
+                    static_cast<double>(whole(b.z) - whole(a.z))};
+      }
+      double same_side = 0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+        same_side += (before[0][j] * before[1][k] - before[0][k] * before[1][j]) *
+                     (after[0][j] * after[1][k] - after[0][k] * after[1][j]);
+      }
+      if (!(same_side > 0)) return true;
+    }
+    return false;
+  }
+
+  /// Whether a triangle has no area once its corners are whole steps.
+  static bool is_flat(std::span<const FaceCorner> corners, std::span<const std::uint16_t> indices, std::size_t t) {
+    const auto &a = corners[indices[t]].steps, &b = corners[indices[t + 1]].steps, &c = corners[indices[t + 2]].steps;
+    const auto cross = [&](std::size_t i, std::size_t k) {
+      return (b[i] - a[i]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[i] - a[i]);
+    };
+    return cross(0, 1) == 0 && cross(1, 2) == 0 && cross(2, 0) == 0;
+  }
+
+  /// \return the primitive in the order in which it packs best
+  MeshPrimitive packed(const MeshPrimitive& p, Order order) const {
+    std::vector<FaceCorner> corners;
+    corners.reserve(p.vertices.size());
+    for (const MeshVertex& v : p.vertices) {
+      const model::Point3& enu = mesh_.positions[v.position];
+      corners.push_back({{whole(enu.x), whole(enu.y), whole(enu.z)}, v.normal});
+    }
+    MeshPrimitive out;
+    for (std::size_t t = 0; t + 2 < p.indices.size(); t += 3) {
+      // Pieces of elements do not have to close; a solid would be open without it, and keeps floats.
+      if (!far_ && order == Order::vertex_cache && is_flat(corners, p.indices, t)) continue;
+      out.indices.insert(out.indices.end(), p.indices.begin() + static_cast<std::ptrdiff_t>(t),
+                         p.indices.begin() + static_cast<std::ptrdiff_t>(t + 3));
+    }
+    const std::vector<std::uint32_t> numbers = order == Order::along_faces
+                                                   ? order_along_faces(out.indices, corners, kColumn)
+                                                   : packing_order(out.indices, p.vertices.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (numbers[i] == ~0u) continue;
+      if (numbers[i] >= out.vertices.size()) out.vertices.resize(numbers[i] + 1);
+      out.vertices[numbers[i]] = p.vertices[i];
+    }
+    return out;
+  }
+
+  /// \param round  to whole steps
+  int add_positions(const MeshPrimitive& p, bool round) {
+    std::vector<float> values;
+    values.reserve(3 * p.vertices.size());
+    std::array<std::array<double, 3>, 2> bounds{};
+    for (const MeshVertex& v : p.vertices) {
+      const model::Point3& enu = mesh_.positions[v.position];
+      const std::array<double, 3> xyz = y_up(enu.x, enu.y, enu.z);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double stored = round ? std::nearbyint(xyz[i] * kTileStepsPerMetre) / kTileStepsPerMetre : xyz[i];
+        const float value = static_cast<float>(stored) + 0.0f;  // no -0
+        const bool first = values.size() < 3;
+        bounds[0][i] = first ? value : std::min<double>(bounds[0][i], value);
+        bounds[1][i] = first ? value : std::max<double>(bounds[1][i], value);
+        values.push_back(value);
+      }
+    }
+    return add<float>(round ? Stream::tile_positions : Stream::far_positions, values, Component::float32, "VEC3", p,
+                      false, bounds);
+  }
+
+  int add_normals(const MeshPrimitive& p) {
+    std::vector<std::int8_t> values;
+    values.reserve(4 * p.vertices.size());
+    for (const MeshVertex& v : p.vertices) {
+      const std::array<std::int8_t, 3> normal = y_up(v.normal[0], v.normal[1], v.normal[2]);
+      values.insert(values.end(), {normal[0], normal[1], normal[2], std::int8_t{0}});
+    }
+    return add<std::int8_t>(Stream::normals, values, Component::int8, "VEC3", p, true);
+  }
+
+  int add_colours(const MeshPrimitive& p) {
+    std::vector<std::uint16_t> values;
+    values.reserve(4 * p.vertices.size());
+    for (const MeshVertex& v : p.vertices) {
+      const model::Colour& c = v.look.colour;
+      values.insert(values.end(), {kLinearLight[c.r], kLinearLight[c.g], kLinearLight[c.b], std::uint16_t{65535}});
+    }
+    return add<std::uint16_t>(Stream::colours, values, Component::uint16, "VEC4", p, true);
+  }
+
+  int add_classes(const MeshPrimitive& p, const MaterialTable& table) {
+    std::vector<std::uint16_t> values;
+    values.reserve(2 * p.vertices.size());
+    for (const MeshVertex& v : p.vertices) {
+      const std::array<std::uint16_t, 2> place = table.place(v.look.material);
+      values.insert(values.end(), place.begin(), place.end());
+    }
+    return add<std::uint16_t>(Stream::texture_places, values, Component::uint16, "VEC2", p, true);
+  }
+
+  int add_features(const MeshPrimitive& p) {
+    if (wide_features_) {
+      std::vector<float> values;
+      for (const MeshVertex& v : p.vertices) values.push_back(static_cast<float>(v.feature));
+      return add<float>(Stream::wide_features, values, Component::float32, "SCALAR", p, false);
+    }
+    std::vector<std::uint16_t> values;
+    values.reserve(2 * p.vertices.size());
+    for (const MeshVertex& v : p.vertices)
+      values.insert(values.end(), {static_cast<std::uint16_t>(v.feature), std::uint16_t{0}});
+    return add<std::uint16_t>(Stream::features, values, Component::uint16, "SCALAR", p, false);
+  }
+
+  int add_indices(const MeshPrimitive& p) {
+    const std::size_t at = document_.append<std::uint16_t>(Stream::indices, p.indices);
+    return document_.add_accessor({.stream = Stream::indices,
+                                   .offset = at,
+                                   .component = Component::uint16,
+                                   .type = "SCALAR",
+                                   .count = p.indices.size()});
+  }
+
+  template <class T>
+  int add(Stream stream, std::span<const T> values, Component component, std::string_view type, const MeshPrimitive& p,
+          bool normalised, std::optional<std::array<std::array<double, 3>, 2>> bounds = std::nullopt) {
+    const std::size_t at = document_.append(stream, values);
+    return document_.add_accessor({.stream = stream,
+                                   .offset = at,
+                                   .component = component,
+                                   .type = type,
+                                   .count = p.vertices.size(),
+                                   .normalised = normalised,
+                                   .bounds = bounds});
+  }
+
+  std::string feature_ids(const MeshPrimitive& p) const {
+    // featureCount is the number of different rows that this primitive uses.
+    std::vector<std::uint32_t> rows;
+    for (const MeshVertex& v : p.vertices)
+      if (rows.empty() || rows.back() != v.feature) rows.push_back(v.feature);
+    std::sort(rows.begin(), rows.end());
+    const auto count = std::unique(rows.begin(), rows.end()) - rows.begin();
+    std::string json = "{\"featureIds\":[{\"attribute\":0,\"featureCount\":";
+    append_number(json, std::int64_t{count});
+    return json + ",\"label\":\"" + std::string(label_) + "\",\"propertyTable\":0}]}";
+  }
+
+  GlbDocument& document_;
+  Mesh& mesh_;
+  std::string_view label_;
+  bool wide_features_, far_ = false;
+};
+
+}  // namespace
+
+std::size_t write_mesh(GlbDocument& document, Mesh& mesh, std::size_t features, std::string_view label, int material,
+                       const MaterialTable& table) {
+  return MeshWriter(document, mesh, features, label).write(material, table);
+}
+
+}  // namespace blockrand::outputs

@@ -1,0 +1,22 @@
+// The triangles of a mesh as vertex buffers of a GLB.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+#include "pipeline/outputs/gltf/glb_document.h"
+#include "pipeline/outputs/gltf/material.h"
+#include "pipeline/outputs/gltf/mesh_buffers.h"
+
+namespace blockrand::outputs {
+
+/// Adds a node for `mesh.primitives` and one for `mesh.pieces`, by whose name "elements" readers know them apart. Takes the
+/// primitives out of `mesh` as it writes them.
+/// \param features  rows of the property table
+/// \param label     class of the features
+/// \param material  for which `table` tells where classes are
+/// \return how many triangles it wrote
+std::size_t write_mesh(GlbDocument& document, Mesh& mesh, std::size_t features, std::string_view label, int material,
+                       const MaterialTable& table);
+
+}  // namespace blockrand::outputs
