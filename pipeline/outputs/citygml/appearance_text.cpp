@@ -11,6 +11,18 @@ std::uint32_t look_of(const model::Face& face) { return MaterialNumbers::key(fac
 
 }  // namespace
 
+void open_material(std::string& out, const X3dMaterial& material) {
+  out += "<app:surfaceDataMember><app:X3DMaterial><gml:name>";
+  append_xml(out, material.name);
+  out += "</gml:name><app:diffuseColor>";
+  append_ten_thousandths(out, material.diffuse, ' ');
+  out += "</app:diffuseColor><app:specularColor>";
+  append_ten_thousandths(out, material.specular, ' ');
+  out += "</app:specularColor><app:shininess>";
+  append_ten_thousandths(out, material.shininess);
+  out += "</app:shininess>\n";
+}
+
 bool has_one_look(const model::Solid& solid) {
   return std::all_of(solid.faces.begin(), solid.faces.end(),
                      [&](const model::Face& face) { return look_of(face) == look_of(solid.faces.front()); });

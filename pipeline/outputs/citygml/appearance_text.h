@@ -13,6 +13,10 @@
 
 namespace blockrand::outputs {
 
+/// Appends an app:X3DMaterial up to its targets; kMaterialEnd closes it.
+void open_material(std::string& out, const X3dMaterial& material);
+inline constexpr std::string_view kMaterialEnd = "</app:X3DMaterial></app:surfaceDataMember>\n";
+
 /// Whether all faces of a body have one material and colour.
 bool has_one_look(const model::Solid& solid);
 
@@ -47,18 +51,10 @@ class AppearanceText {
       const std::uint32_t key = numbers_.keys()[i];
       const X3dMaterial material =
           x3d_material(classes.at(MaterialNumbers::material(key)), MaterialNumbers::colour(key));
-      out += "<app:surfaceDataMember><app:X3DMaterial><gml:name>";
-      append_xml(out, material.name);
-      out += "</gml:name><app:diffuseColor>";
-      append_ten_thousandths(out, material.diffuse, ' ');
-      out += "</app:diffuseColor><app:specularColor>";
-      append_ten_thousandths(out, material.specular, ' ');
-      out += "</app:specularColor><app:shininess>";
-      append_ten_thousandths(out, material.shininess);
-      out += "</app:shininess>\n";
+      open_material(out, material);
       write(out);
       write(targets_[i]);
-      out = "</app:X3DMaterial></app:surfaceDataMember>\n";
+      out = kMaterialEnd;
     }
     out += "</app:Appearance></app:appearanceMember>\n";
     write(out);

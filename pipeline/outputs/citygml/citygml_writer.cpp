@@ -502,24 +502,6 @@ int write_to_sink(void* context, const char* bytes, int size) {
 
 const xmlChar* xml(const char* text) { return reinterpret_cast<const xmlChar*>(text); }
 
-std::string description(const CityGmlOptions& options) {
-  std::string text;
-  const auto add = [&](std::string_view label, std::string_view value) {
-    if (value.empty()) return;
-    if (!text.empty()) text += "; ";
-    text += label;
-    append_clean(text, value);
-  };
-  add("CRS: ", options.srs_name);
-  add("heights: ", options.height_reference);
-  if (options.lod >= 3 && options.lean)
-    add("detail: ",
-        "lean, windows and doors in the plane of their walls (reveal_depth says how far behind it they lie), pieces of "
-        "ornaments under 0.5 m left out");
-  add("data: ", options.attribution);
-  return text;
-}
-
 void write_envelope(xmlTextWriterPtr writer, const Envelope& box, const std::string& srs_name) {
   if (box.empty) return;
   const auto corner = [&](const char* name, const model::Point3& p) {
@@ -543,6 +525,24 @@ void write_envelope(xmlTextWriterPtr writer, const Envelope& box, const std::str
 }
 
 }  // namespace
+
+std::string citygml_description(const CityGmlOptions& options) {
+  std::string text;
+  const auto add = [&](std::string_view label, std::string_view value) {
+    if (value.empty()) return;
+    if (!text.empty()) text += "; ";
+    text += label;
+    append_clean(text, value);
+  };
+  add("CRS: ", options.srs_name);
+  add("heights: ", options.height_reference);
+  if (options.lod >= 3 && options.lean)
+    add("detail: ",
+        "lean, windows and doors in the plane of their walls (reveal_depth says how far behind it they lie), pieces of "
+        "ornaments under 0.5 m left out");
+  add("data: ", options.attribution);
+  return text;
+}
 
 void write_citygml(const model::Region& region, const CityGmlOptions& options, const Sink& sink) {
   // Once, before several threads are in the library.
@@ -579,7 +579,7 @@ void write_citygml(const model::Region& region, const CityGmlOptions& options, c
   for (const auto& [name, value] : namespaces) xmlTextWriterWriteAttribute(writer, xml(name), xml(value));
   xmlTextWriterWriteRaw(writer, xml("\n"));
   // The description comes before the name in GML's sequence.
-  if (const std::string text = description(options); !text.empty()) {
+  if (const std::string text = citygml_description(options); !text.empty()) {
     xmlTextWriterWriteElement(writer, xml("description"), xml(text.c_str()));
     xmlTextWriterWriteRaw(writer, xml("\n"));
   }

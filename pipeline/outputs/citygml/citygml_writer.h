@@ -42,4 +42,7 @@ void write_citygml(const model::Region& region, const CityGmlOptions& options, c
 /// The same as one string.
 std::string write_citygml(const model::Region& region, const CityGmlOptions& options);
 
+/// The gml:description of a file: reference system, heights, detail, whose data it is.
+std::string citygml_description(const CityGmlOptions& options);
+
 }  // namespace blockrand::outputs

@@ -7,27 +7,12 @@
 #include "pipeline/outputs/element_polygons.h"
 #include "pipeline/outputs/number_text.h"
 #include "pipeline/outputs/placed_element.h"
+#include "pipeline/outputs/tile_digits.h"
 
 namespace blockrand::outputs {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff;
-
-/// Digits and small letters, as ids may have them.
-void append_base36(std::string& out, std::uint64_t number) {
-  std::string digits;
-  do {
-    digits += "0123456789abcdefghijklmnopqrstuvwxyz"[number % 36];
-    number /= 36;
-  } while (number != 0);
-  out.append(digits.rbegin(), digits.rend());
-}
-
-/// A number that no other tile of any level has: all tiles of lower levels come first.
-std::uint64_t number_of(const model::TileId& tile) {
-  const std::uint64_t side = std::uint64_t{1} << std::clamp(tile.level, 0, 28);
-  return (side * side - 1) / 3 + tile.y * side + tile.x;
-}
 
 /// The exterior and interiors of a polygon.
 std::string rings_text(const ElementPolygon& polygon) {

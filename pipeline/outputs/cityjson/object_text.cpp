@@ -65,6 +65,18 @@ void append_extent(std::string& out, const Extent& extent, const GridOrigin& ori
   }
 }
 
+void append_material(std::string& out, const X3dMaterial& look) {
+  out += "{\"name\":";
+  append_json(out, look.name);
+  out += ",\"diffuseColor\":[";
+  append_ten_thousandths(out, look.diffuse, ',');
+  out += "],\"specularColor\":[";
+  append_ten_thousandths(out, look.specular, ',');
+  out += "],\"shininess\":";
+  append_ten_thousandths(out, look.shininess);
+  out += '}';
+}
+
 void append_appearance(std::string& out, const MaterialNumbers& numbers,
                        const std::vector<model::MaterialClass>& classes) {
   out += "{\"default-theme-material\":\"";
@@ -73,16 +85,9 @@ void append_appearance(std::string& out, const MaterialNumbers& numbers,
   bool first = true;
   for (const std::uint32_t key : numbers.keys()) {
     const X3dMaterial look = x3d_material(classes.at(MaterialNumbers::material(key)), MaterialNumbers::colour(key));
-    out += first ? "{\"name\":" : ",{\"name\":";
+    if (!first) out += ',';
     first = false;
-    append_json(out, look.name);
-    out += ",\"diffuseColor\":[";
-    append_ten_thousandths(out, look.diffuse, ',');
-    out += "],\"specularColor\":[";
-    append_ten_thousandths(out, look.specular, ',');
-    out += "],\"shininess\":";
-    append_ten_thousandths(out, look.shininess);
-    out += '}';
+    append_material(out, look);
   }
   out += "]}";
 }

@@ -31,6 +31,9 @@ struct Extent {
 /// Appends an array of six numbers, metres.
 void append_extent(std::string& out, const Extent& extent, const GridOrigin& origin);
 
+/// Appends a material of an appearance.
+void append_material(std::string& out, const X3dMaterial& look);
+
 /// Appends the materials of `numbers` as the value of "appearance".
 void append_appearance(std::string& out, const MaterialNumbers& numbers,
                        const std::vector<model::MaterialClass>& classes);
