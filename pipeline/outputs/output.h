@@ -76,6 +76,11 @@ struct FinishedTile {
   std::vector<base::PublishedFile> files;
 };
 
+/// Whether formats have something to write of what stands around the tile's buildings.
+inline bool has_surroundings(const FinishedTile& tile, const OutputContext& context) {
+  return context.surroundings && tile.surroundings && !tile.surroundings->empty();
+}
+
 /// What is known when all tiles are done.
 struct FinishedBuild {
   const ObjectCounts& counts;

@@ -4,6 +4,8 @@
 #include <string_view>
 
 #include "pipeline/outputs/citygml/citygml_writer.h"
+#include "pipeline/outputs/citygml/surroundings_gml.h"
+#include "pipeline/outputs/surrounding_objects.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -32,6 +34,7 @@ class CityGmlOutput : public OutputOf<bool> {
 
   std::any write_tile(FinishedTile& tile) const override {
     if (tile.has_parts) tile.files.push_back(write(tile.region, tile.name));
+    if (has_surroundings(tile, context_)) tile.files.push_back(write_surroundings(tile));
     return tile.has_parts;
   }
   void take(const FinishedTile&, std::any product) override { empty_ = empty_ && !std::any_cast<bool>(product); }
@@ -42,14 +45,29 @@ class CityGmlOutput : public OutputOf<bool> {
 
  private:
   base::PublishedFile write(const model::Region& region, const std::string& name) const {
-    const std::string path = "citygml/" + name + ".gml";
     const CityGmlOptions options = citygml_options(region, context_);
-    if (context_.options.gzip) return write_text_file(path, write_citygml(region, options), context_);
+    return write_pieces("citygml/" + name + ".gml", [&](const Sink& sink) { write_citygml(region, options, sink); });
+  }
+
+  base::PublishedFile write_surroundings(const FinishedTile& tile) const {
+    const CityGmlOptions options = citygml_options(tile.region, context_);
+    return write_pieces("citygml/" + tile.name + std::string(kSurroundingsFile) + ".gml", [&](const Sink& sink) {
+      write_surroundings_gml(*tile.surroundings, *context_.surroundings, tile.region.tile, options, sink);
+    });
+  }
+
+  template <class Text>
+  base::PublishedFile write_pieces(const std::string& path, const Text& text) const {
+    if (context_.options.gzip) {
+      std::string whole;
+      text([&](std::string_view bytes) { whole += bytes; });
+      return write_text_file(path, whole, context_);
+    }
     // Piece by piece: the text of a tile is larger than all else that is made of it.
     constexpr std::size_t kPiece = 1 << 18;
     base::StagedFile file = context_.folder.create(path);
     std::string waiting;
-    write_citygml(region, options, [&](std::string_view bytes) {
+    text([&](std::string_view bytes) {
       waiting += bytes;
       if (waiting.size() < kPiece) return;
       file.append(waiting);

@@ -6,6 +6,8 @@
 #include <ctime>
 
 #include "pipeline/outputs/cityjson/cityjson_writer.h"
+#include "pipeline/outputs/cityjson/surroundings_cityjson.h"
+#include "pipeline/outputs/surrounding_objects.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -44,6 +46,7 @@ class CityJsonOutput : public OutputOf<bool> {
   std::any write_tile(FinishedTile& tile) const override {
     const bool written = sequences_ && tile.has_parts;
     if (written) tile.files.push_back(write(tile.region, tile.name, newest_edit(tile.shard)));
+    if (sequences_ && has_surroundings(tile, context_)) tile.files.push_back(write_surroundings(tile));
     return written;
   }
   void take(const FinishedTile& tile, std::any product) override {
@@ -63,6 +66,14 @@ class CityJsonOutput : public OutputOf<bool> {
     CityJsonOptions options = cityjson_options(context_, model_name(region.tile));
     options.data_time = date;
     return write_text_file("cityjson/" + name + ".city.jsonl", write_cityjson_sequence(region, options), context_);
+  }
+
+  base::PublishedFile write_surroundings(const FinishedTile& tile) const {
+    CityJsonOptions options = cityjson_options(context_, model_name(tile.region.tile));
+    options.data_time.clear();  // nothing tells when what stands around was edited
+    return write_text_file(
+        "cityjson/" + tile.name + std::string(kSurroundingsFile) + ".city.jsonl",
+        write_surroundings_cityjson(*tile.surroundings, *context_.surroundings, tile.region.tile, options), context_);
   }
 
   /// When an object of the tile was last edited: a file changes when what is in it does, not with every edit of the extract.

@@ -19,6 +19,7 @@ constexpr const char* kProject = "buildings.qgz";
 struct TileProduct {
   GeoPackageRows rows;
   geometry::PlanBox box;  ///< of the buildings
+  SurroundingRows surroundings;
 };
 
 geometry::PlanBox box_of(const model::Region& region) {
@@ -100,15 +101,19 @@ class GeoPackageOutput : public OutputOf<TileProduct> {
  public:
   explicit GeoPackageOutput(const OutputContext& context)
       : context_(context),
-        writer_(context.folder.staging_path() + "/" + kFile,
-                {context.crs.authority_code, std::string(context.data_time), context.heights.words,
-                 attribution(context), context.imagery && !context.imagery->outlines.empty()}) {}
+        writer_(
+            context.folder.staging_path() + "/" + kFile,
+            {context.crs.authority_code, std::string(context.data_time), context.heights.words, attribution(context),
+             context.imagery && !context.imagery->outlines.empty(), context.surroundings != nullptr}) {}
 
   std::any write_tile(FinishedTile& tile) const override {
-    return TileProduct{geopackage_rows(tile.region, context_.lod), box_of(tile.region)};
+    return TileProduct{geopackage_rows(tile.region, context_.lod), box_of(tile.region),
+                       has_surroundings(tile, context_) ? surrounding_rows(*tile.surroundings, *context_.surroundings)
+                                                        : SurroundingRows()};
   }
   void take(const FinishedTile& tile, std::any product) override {
-    const auto& [rows, box] = *std::any_cast<TileProduct>(&product);
+    const auto& [rows, box, surroundings] = *std::any_cast<TileProduct>(&product);
+    if (!surroundings.empty()) writer_.add(surroundings);
     if (rows.buildings.rows() == 0) return;
     extent_.include(box);
     writer_.add(rows);

@@ -57,6 +57,18 @@ std::vector<layer_file::LayerSpec> layers(const GeoPackageOptions& options) {
     all.push_back({"unmapped", GeometryKind::polygon, unmapped_columns(),
                    text("Candidates: what looks like a building in an aerial image where none is mapped")});
   }
+  if (options.surroundings)
+    for (layer_file::LayerSpec& layer : surrounding_layers()) {
+      layer.description = text(std::move(layer.description));
+      all.push_back(std::move(layer));
+    }
+  return all;
+}
+
+std::vector<QgisStyle> styles(const GeoPackageOptions& options) {
+  std::vector<QgisStyle> all = qgis_styles(options.images);
+  if (options.surroundings)
+    for (QgisStyle& style : surrounding_styles()) all.push_back(std::move(style));
   return all;
 }
 
@@ -64,7 +76,8 @@ std::vector<layer_file::LayerSpec> layers(const GeoPackageOptions& options) {
 
 struct GeoPackageWriter::Impl {
   layer_file::LayerFile file;
-  CellTable row;  // of add_block and its like, used again
+  CellTable row;                 // of add_block and its like, used again
+  std::size_t surroundings = 0;  // the first of their layers; 0: there are none
 
   CellTable& empty_row() {
     row.cells.clear();
@@ -81,8 +94,9 @@ struct GeoPackageWriter::Impl {
 };
 
 GeoPackageWriter::GeoPackageWriter(std::string path, GeoPackageOptions options)
-    : impl_(new Impl{{std::move(path), {options.crs, options.data_time}, layers(options), qgis_styles(options.images)},
-                     {}}) {}
+    : impl_(new Impl{{std::move(path), {options.crs, options.data_time}, layers(options), styles(options)}, {}}) {
+  if (options.surroundings) impl_->surroundings = options.images ? kUnmapped + 1 : kFootprintBefore;
+}
 
 GeoPackageWriter::~GeoPackageWriter() = default;
 
@@ -91,6 +105,13 @@ void GeoPackageWriter::add(const GeoPackageRows& rows) {
   impl_->file.put(kParts, rows.parts);
   impl_->file.put(kFacadeEdges, rows.wall_segments);
   impl_->file.put(kSurfaces, rows.surfaces);
+}
+
+void GeoPackageWriter::add(const SurroundingRows& rows) {
+  if (impl_->surroundings == 0) return;
+  impl_->file.put(impl_->surroundings, rows.ground);
+  impl_->file.put(impl_->surroundings + 1, rows.bodies);
+  impl_->file.put(impl_->surroundings + 2, rows.objects);
 }
 
 void GeoPackageWriter::add_block(const BlockRow& block) { impl_->put_one(kBlocks, block); }

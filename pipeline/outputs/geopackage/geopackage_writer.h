@@ -12,6 +12,7 @@
 #include "pipeline/model/region.h"
 #include "pipeline/outputs/geopackage/context_rows.h"
 #include "pipeline/outputs/geopackage/geopackage_rows.h"
+#include "pipeline/outputs/geopackage/surroundings_layers.h"
 
 namespace blockrand::outputs {
 
@@ -21,6 +22,7 @@ struct GeoPackageOptions {
   std::string height_reference;  ///< in words, for the layers' descriptions
   std::string attribution;       ///< source and licence of the data, for the layers' descriptions
   bool images = false;           ///< the layers footprint_before and unmapped are there
+  bool surroundings = false;     ///< the layers of surroundings_layers.h are there, behind all others
 };
 
 /// An object of the extract that is not modelled itself.
@@ -47,6 +49,7 @@ struct GeoPackageTile {
 /// place is known), `tiles` (Polygon), `facade_edges` (LineString), `blocks`, `courtyards` and `cells` (Polygon), `surfaces` (MultiPolygonZ); columns in columns.h, their meaning and unit in the file's gpkg_data_columns.
 /// With images also `footprint_before` (MultiPolygon): outlines that an image shows, as they stood before it, with the receipt;
 /// and `unmapped` (Polygon): what looks like a building where none is mapped.
+/// With surroundings also surrounding_layers().
 /// The table `layer_styles` holds QGIS styles, one default for each layer.
 ///
 /// The same calls give the same bytes: the file holds no clock and no UUID. One thread at a time, any thread; no GDAL
@@ -65,6 +68,8 @@ class GeoPackageWriter {
 
   /// Appends a tile's buildings, bodies and wall segments of outlines.
   void add(const GeoPackageRows& rows);
+  /// Appends what stands around them; options.surroundings says that there is any.
+  void add(const SurroundingRows& rows);
   void add_reported(const GeoPackageReported& object);
   void add_tile(const GeoPackageTile& tile);
   /// Rows stand in the file in the order of these calls.
