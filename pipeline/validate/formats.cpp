@@ -38,7 +38,12 @@ bool is_format(std::string_view key) {
   return std::any_of(std::begin(kFormats), std::end(kFormats), [&](const FormatRules& f) { return f.key == key; });
 }
 
-std::optional<TilePath> tile_path(std::string_view path) {
+namespace {
+
+constexpr std::string_view kSurroundings = "_surroundings";
+
+/// A file of a tile, whatever is in it.
+std::optional<TilePath> any_tile_path(std::string_view path) {
   for (std::size_t f = 0; f < kTileFormats; ++f) {
     std::string_view bare = path;
     if (bare.ends_with(".gz")) bare.remove_suffix(3);
@@ -53,6 +58,21 @@ std::optional<TilePath> tile_path(std::string_view path) {
     return TilePath{std::move(name), format, level, piece};
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<TilePath> tile_path(std::string_view path) {
+  std::optional<TilePath> found = any_tile_path(path);
+  if (found && found->format != Format::gltf && found->tile.ends_with(kSurroundings)) found.reset();
+  return found;
+}
+
+std::optional<TilePath> surroundings_path(std::string_view path) {
+  std::optional<TilePath> found = any_tile_path(path);
+  if (!found || found->format == Format::gltf || !found->tile.ends_with(kSurroundings)) return std::nullopt;
+  found->tile.resize(found->tile.size() - kSurroundings.size());
+  return found;
 }
 
 std::string explained_tile(std::string_view path) { return between(path, "explain/", ".jsonl.gz"); }

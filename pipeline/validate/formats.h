@@ -61,8 +61,11 @@ struct TilePath {
   bool piece = false;          ///< a GLB with a part of the tile's buildings
 };
 
-/// \returns  nothing for files of the whole build
+/// \returns  nothing for files of the whole build, and for files of surroundings
 std::optional<TilePath> tile_path(std::string_view path);
+
+/// "citygml/15_1_2_surroundings.gml": CityGML of the tile "15_1_2"; nothing for files of other kinds.
+std::optional<TilePath> surroundings_path(std::string_view path);
 
 /// "explain/15_1_2.jsonl.gz" → "15_1_2"; empty for other files.
 std::string explained_tile(std::string_view path);

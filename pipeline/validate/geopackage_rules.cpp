@@ -53,6 +53,8 @@ class Rules {
     identification();
     if (!tables()) return false;
     for (const GeoPackageLayer& layer : kGeoPackageLayers) this->layer(layer);
+    if (has_surroundings())
+      for (const GeoPackageLayer& layer : kSurroundingLayers) this->layer(layer);
     descriptions();
     styles();
     ids();
@@ -139,6 +141,15 @@ class Rules {
     return all;
   }
 
+  /// Whether the layers of surroundings are there; tells of those that are there without the others.
+  bool has_surroundings() {
+    std::size_t there = 0;
+    for (const GeoPackageLayer& layer : kSurroundingLayers)
+      there += columns_of(layer.table).contains(std::string(layer.id));
+    if (there != 0 && there != std::size(kSurroundingLayers)) rule("ground", "layers of surroundings are missing");
+    return there == std::size(kSurroundingLayers);
+  }
+
   /// What the standard's tables say of a layer, then its geometries and their index, row by row.
   void layer(const GeoPackageLayer& l) {
     const std::string table(l.table);
@@ -217,9 +228,9 @@ class Rules {
     std::string first_unlike;
     // Buildings and parts are read again, with their rows, by rows(); their errors are told there.
     const bool tell = l.table != "buildings" && l.table != "parts";
-    each(fmt::format("SELECT l.fid, l.id, l.geom{1} FROM \"{0}\" l{2}", table,
+    each(fmt::format("SELECT l.fid, l.{3}, l.geom{1} FROM \"{0}\" l{2}", table,
                      indexed ? ", r.minx, r.miny, r.maxx, r.maxy" : "",
-                     indexed ? fmt::format(" LEFT JOIN \"{}\" r ON r.id = l.fid", index) : ""),
+                     indexed ? fmt::format(" LEFT JOIN \"{}\" r ON r.id = l.fid", index) : "", l.id),
          [&](const SqliteRow& row) {
            if (row.null(2)) {
              if (l.needs_geometry) rule(row.string(1), fmt::format("no geometry in the layer {}", table));

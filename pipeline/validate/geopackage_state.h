@@ -18,6 +18,7 @@ struct GeoPackageLayer {
   std::string_view table, geometry_type;
   WkbType type;
   bool needs_geometry;
+  std::string_view id = "id";  ///< column that names a row in findings
 };
 inline constexpr GeoPackageLayer kGeoPackageLayers[] = {
     {"buildings", "MULTIPOLYGON", WkbType::multi_polygon, true},
@@ -29,6 +30,12 @@ inline constexpr GeoPackageLayer kGeoPackageLayers[] = {
     {"courtyards", "POLYGON", WkbType::polygon, true},
     {"cells", "POLYGON", WkbType::polygon, true},
     {"surfaces", "MULTIPOLYGON", WkbType::multi_polygon_z, true},
+};
+/// Layers of builds with surroundings: all of them are there, or none.
+inline constexpr GeoPackageLayer kSurroundingLayers[] = {
+    {"ground", "MULTIPOLYGON", WkbType::multi_polygon, true, "osm_id"},
+    {"surrounding_bodies", "MULTIPOLYGON", WkbType::multi_polygon_z, true, "osm_id"},
+    {"surrounding_objects", "POINT", WkbType::point, true, "osm_id"},
 };
 
 /// An attribute's column; the others are `<name>_source` and `<name>_confidence`.

@@ -22,6 +22,7 @@
 #include "pipeline/validate/packed_files.h"
 #include "pipeline/validate/qgis_project.h"
 #include "pipeline/validate/report_check.h"
+#include "pipeline/validate/surroundings_files.h"
 #include "pipeline/validate/tile_check.h"
 #include "pipeline/validate/tile_files.h"
 #include "pipeline/validate/validate_areas.h"
@@ -50,6 +51,7 @@ class Run {
     read_whole_files();
     choose_positions();
     check_tiles();
+    check_surroundings();
     check_single_files();
     check_counts();
     check_positions();
@@ -336,6 +338,14 @@ class Run {
     if (compared_ > 0)
       checked("content", "attributes, geometry and colours of one format against another", compared_,
               "pairs of bodies");
+  }
+
+  void check_surroundings() {
+    const SurroundingsTotals all =
+        validate::check_surroundings(o_.folder, record_, o_.sample, schema_.get(), workers_, progress_, log());
+    if (all.files == 0) return;
+    checked("surroundings", schema_ ? "ids given once, references, OGC schemas" : "ids given once, references",
+            all.objects, fmt::format("objects in {} files", all.files));
   }
 
   static TileResult checked_tile(const TileFiles& files, const TileContext& context) {

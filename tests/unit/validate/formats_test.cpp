@@ -45,6 +45,22 @@ TEST(Formats, FilesOfATile) {
   }
 }
 
+TEST(Formats, FilesOfSurroundingsAreTheirOwn) {
+  const PathCase cases[] = {{"citygml/15_1_2_surroundings.gml", "15_1_2", Format::citygml},
+                            {"citygml/15_1_2_surroundings.gml.gz", "15_1_2", Format::citygml},
+                            {"cityjson/15_1_2_surroundings.city.jsonl", "15_1_2", Format::cityjson}};
+  for (const PathCase& c : cases) {
+    SCOPED_TRACE(c.path);
+    EXPECT_FALSE(tile_path(c.path));
+    const auto path = surroundings_path(c.path);
+    ASSERT_TRUE(path);
+    EXPECT_EQ(path->tile, c.tile);
+    EXPECT_EQ(path->format, c.format);
+  }
+  for (const char* path : {"citygml/15_1_2.gml", "tiles/15/1/2_surroundings.glb", "surroundings.gml", ""})
+    EXPECT_FALSE(surroundings_path(path)) << path;
+}
+
 TEST(Formats, FilesOfTheWholeBuildBelongToNoTile) {
   for (const char* path : {"tileset.json", "model.glb", "model.city.json", "buildings.gpkg", "citygml/.gml",
                            "tiles/15/17600/12900.glb.gz", "explain/15_1_2.jsonl.gz", ""})

@@ -14,6 +14,7 @@
 #include "pipeline/validate/geopackage_blob.h"
 #include "tests/unit/outputs/row_sample.h"
 #include "tests/unit/outputs/sample_region.h"
+#include "tests/unit/outputs/surroundings_sample.h"
 
 namespace blockrand::validate {
 namespace {
@@ -45,11 +46,12 @@ void complete(model::Region& region) {
   }
 }
 
-/// Two tiles: the zoo and a few houses.
-void write_sound(const std::string& path) {
+/// Two tiles: the zoo and a few houses. \param surroundings  with layers of what stands around
+void write_sound(const std::string& path, bool surroundings = false) {
   SampleRegion zoo = SampleRegion::zoo(), houses = SampleRegion::settlement(40, true);
   houses.region().tile.x += 1;
-  outputs::GeoPackageWriter writer(path, {"EPSG:25833", "2024-05-01T00:00:00Z", "", ""});
+  outputs::GeoPackageWriter writer(path, {"EPSG:25833", "2024-05-01T00:00:00Z", "", "", false, surroundings});
+  writer.add(outputs::surrounding_rows(outputs::test::sample_surroundings(), outputs::test::sample_catalogue()));
   for (SampleRegion* sample : {&zoo, &houses}) {
     complete(sample->region());
     const outputs::GeoPackageRows rows = outputs::geopackage_rows(sample->region(), 2);
@@ -160,6 +162,15 @@ void change(const std::string& path, const std::string& sql) {
   char* error = nullptr;
   ASSERT_EQ(sqlite3_exec(db, sql.c_str(), nullptr, nullptr, &error), SQLITE_OK) << error;
   sqlite3_close(db);
+}
+
+TEST(ReadGeoPackage, LayersOfSurroundingsAreJudgedToo) {
+  const Folder folder;
+  const std::string path = folder / "around.gpkg";
+  write_sound(path, true);
+  EXPECT_THAT(findings(path), IsEmpty());
+  change(path, "PRAGMA foreign_keys=OFF; DELETE FROM gpkg_contents WHERE table_name = 'surrounding_objects'");
+  EXPECT_THAT(findings(path), testing::Contains(testing::HasSubstr("surrounding_objects")));
 }
 
 /// SQL that replaces bytes of a geometry; `at` counts from 0.

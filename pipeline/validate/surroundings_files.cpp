@@ -1,0 +1,252 @@
+#include "pipeline/validate/surroundings_files.h"
+
+#include <fmt/format.h>
+#include <libxml/xmlreader.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <memory>
+#include <unordered_set>
+#include <utility>
+
+#include "pipeline/base/json_depth.h"
+#include "pipeline/base/parallel.h"
+#include "pipeline/validate/bytes_of_file.h"
+#include "pipeline/validate/checked_json.h"
+
+namespace blockrand::validate {
+namespace {
+
+constexpr std::size_t kMostFindings = 100;  // of one file
+constexpr std::size_t kDeepest = 256;       // levels of arrays and objects, as in cityjson_reader.cpp
+
+/// City objects that surroundings are made of.
+constexpr std::string_view kElements[] = {"Road",       "Square",        "Railway",          "TransportationComplex",
+                                          "WaterBody",  "LandUse",       "Bridge",           "SolitaryVegetationObject",
+                                          "PlantCover", "CityFurniture", "GenericCityObject"};
+constexpr std::string_view kTypes[] = {"Road",       "TransportSquare", "Railway",           "WaterBody",
+                                       "LandUse",    "Bridge",          "OtherConstruction", "SolitaryVegetationObject",
+                                       "PlantCover", "CityFurniture"};
+
+template <std::size_t N>
+bool is_one_of(const std::string_view (&names)[N], std::string_view name) {
+  return std::find(std::begin(names), std::end(names), name) != std::end(names);
+}
+
+class Checker {
+ public:
+  Checker(Format format, const std::string& name, SurroundingsFile& out)
+      : rule_(format == Format::citygml ? Check::citygml_rule : Check::cityjson_rule), name_(name), out_(out) {}
+
+  void rule(std::string object, std::string what) { add(rule_, std::move(object), std::move(what)); }
+  void unreadable(std::string what) { add(Check::file_unreadable, {}, std::move(what)); }
+
+ private:
+  void add(Check check, std::string object, std::string what) {
+    if (out_.findings.size() < kMostFindings)
+      out_.findings.push_back({check, name_, std::move(object), std::move(what)});
+  }
+
+  Check rule_;
+  const std::string& name_;
+  SurroundingsFile& out_;
+};
+
+// ---- CityGML
+
+std::string_view view(const xmlChar* text) { return text ? reinterpret_cast<const char*>(text) : std::string_view(); }
+
+void read_gml(std::string_view xml, Checker& check, SurroundingsFile& out) {
+  constexpr int kOptions = XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING | XML_PARSE_HUGE;
+  const std::unique_ptr<xmlTextReader, void (*)(xmlTextReaderPtr)> reader(
+      xml.size() > 0x7fffffff
+          ? nullptr
+          : xmlReaderForMemory(xml.data(), static_cast<int>(xml.size()), "file.gml", nullptr, kOptions),
+      xmlFreeTextReader);
+  if (!reader) return check.unreadable("larger than can be read");
+  std::unordered_set<std::string> ids;
+  std::vector<std::string> named;
+  std::string parent, element;
+  bool in_target = false;
+  int status = 0;
+  while ((status = xmlTextReaderRead(reader.get())) == 1) {
+    const int type = xmlTextReaderNodeType(reader.get());
+    if (type == XML_READER_TYPE_DOCUMENT_TYPE) check.rule({}, "a document type definition");
+    if (type == XML_READER_TYPE_TEXT && in_target) named.emplace_back(view(xmlTextReaderConstValue(reader.get())));
+    if (type != XML_READER_TYPE_ELEMENT) continue;
+    const int depth = xmlTextReaderDepth(reader.get());
+    element = view(xmlTextReaderConstLocalName(reader.get()));
+    in_target = element == "target";
+    if (depth == 0 && element != "CityModel") check.rule({}, "the root is no CityModel");
+    std::string id;
+    while (xmlTextReaderMoveToNextAttribute(reader.get()) == 1) {
+      const std::string_view attribute = view(xmlTextReaderConstLocalName(reader.get())),
+                             value = view(xmlTextReaderConstValue(reader.get()));
+      if (attribute == "id") id = value;
+      if (attribute == "href") named.emplace_back(value);
+    }
+    if (!id.empty() && !ids.insert(id).second) check.rule(id, "gml:id twice: " + id);
+    if (depth == 2 && parent == "cityObjectMember") {
+      if (!is_one_of(kElements, element)) check.rule(id, "unexpected city object " + element);
+      if (id.empty()) check.rule({}, "a " + element + " without gml:id");
+      out.ids.push_back(id);
+    }
+    if (depth == 1) parent = element;
+  }
+  if (status != 0) return check.unreadable("not well-formed");
+  for (const std::string& name : named)
+    if (!name.starts_with('#') || !ids.contains(name.substr(1))) check.rule(name, "names what is not in the file");
+}
+
+// ---- CityJSON
+
+/// Every number of nested arrays lies below `count`.
+bool all_below(const Json& list, std::uint64_t count) {
+  if (!list.is_array()) {
+    const auto n = whole(&list);
+    return n && *n < count;
+  }
+  return std::all_of(list.begin(), list.end(), [&](const Json& item) { return all_below(item, count); });
+}
+
+std::uint64_t length(const Json* list) { return list && list->is_array() ? list->size() : 0; }
+
+class SequenceReader {
+ public:
+  SequenceReader(Checker& check, SurroundingsFile& out) : check_(check), out_(out) {}
+
+  void line(std::string_view text, std::size_t number) {
+    const std::string where = fmt::format("line {}", number);
+    const auto json = base::json_depth(text) > kDeepest ? std::nullopt : parse_json(text);
+    if (!json) return check_.unreadable(where + " is no JSON");
+    if (number == 1)
+      head(*json);
+    else
+      feature(*json, where);
+  }
+
+ private:
+  void head(const Json& json) {
+    if (text(member(json, "type")) != "CityJSON" || text(member(json, "version")) != "2.0")
+      check_.rule({}, "the first line is no CityJSON of version 2.0");
+    if (!numbers(member(member(json, "transform"), "scale"), 3) ||
+        !numbers(member(member(json, "transform"), "translate"), 3))
+      check_.rule({}, "the first line has no transform");
+    const Json* templates = member(json, "geometry-templates");
+    templates_ = length(member(templates, "templates"));
+    for (std::uint64_t i = 0; i < templates_; ++i)
+      geometry(*element(member(templates, "templates"), i), length(member(templates, "vertices-templates")),
+               length(member(member(json, "appearance"), "materials")), fmt::format("template {}", i));
+  }
+
+  void feature(const Json& json, const std::string& where) {
+    const std::string id = text(member(json, "id"));
+    const Json* objects = member(json, "CityObjects");
+    if (text(member(json, "type")) != "CityJSONFeature" || !objects || !objects->is_object() || !objects->contains(id))
+      return check_.rule(id, where + " is no CityJSONFeature with its object");
+    for (const auto& [name, object] : objects->items()) {
+      out_.ids.push_back(name);
+      if (!ids_.insert(name).second) check_.rule(name, "stands twice");
+      if (const std::string type = text(member(object, "type")); !is_one_of(kTypes, type))
+        check_.rule(name, "unexpected type " + type);
+      const Json* geometries = member(object, "geometry");
+      for (std::uint64_t g = 0; g < length(geometries); ++g)
+        geometry(*element(geometries, g), length(member(json, "vertices")),
+                 length(member(member(json, "appearance"), "materials")), name);
+    }
+  }
+
+  void geometry(const Json& json, std::uint64_t vertices, std::uint64_t materials, const std::string& object) {
+    const Json* boundaries = member(json, "boundaries");
+    if (!boundaries || !boundaries->is_array() || !all_below(*boundaries, vertices))
+      check_.rule(object, "a geometry counts vertices that are not there");
+    if (text(member(json, "type")) == "GeometryInstance") {
+      const auto number = whole(member(json, "template"));
+      if (!number || *number >= templates_) check_.rule(object, "its template is not there");
+      if (!numbers(member(json, "transformationMatrix"), 16)) check_.rule(object, "its matrix is none");
+      return;
+    }
+    const Json* themes = member(json, "material");
+    if (!themes || !themes->is_object()) return;
+    for (const auto& [theme, look] : themes->items())
+      for (const char* kind : {"value", "values"})
+        if (const Json* numbers = member(look, kind); numbers && !all_below(*numbers, materials))
+          check_.rule(object, "a face has a material that is not there");
+  }
+
+  Checker& check_;
+  SurroundingsFile& out_;
+  std::unordered_set<std::string> ids_;
+  std::uint64_t templates_ = 0;
+};
+
+void read_sequence(std::string_view text, Checker& check, SurroundingsFile& out) {
+  if (text.empty() || text.back() != '\n') check.rule({}, "the last line has no end");
+  SequenceReader reader(check, out);
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const std::size_t end = text.find('\n');
+    reader.line(text.substr(0, end), number);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+}
+
+SurroundingsFile checked_file(const std::string& folder, const std::string& path, Format format,
+                              const CityGmlSchema* schema) {
+  SurroundingsFile out;
+  const std::string full = (std::filesystem::path(folder) / path).string();
+  if (!std::filesystem::exists(full)) return out;
+  std::string why;
+  const auto bytes = content_of(full, why);
+  if (!bytes) {
+    out.findings.push_back({Check::file_unreadable, path, "", why});
+    return out;
+  }
+  out = read_surroundings(format, *bytes, path);
+  if (schema && format == Format::citygml)
+    for (Finding& finding : schema->validate(*bytes, path)) out.findings.push_back(std::move(finding));
+  return out;
+}
+
+}  // namespace
+
+SurroundingsFile read_surroundings(Format format, std::string_view bytes, const std::string& name) {
+  SurroundingsFile out;
+  Checker check(format, name, out);
+  if (format == Format::citygml)
+    read_gml(bytes, check, out);
+  else
+    read_sequence(bytes, check, out);
+  return out;
+}
+
+SurroundingsTotals check_surroundings(const std::string& folder, const BuildRecord& record, int sample,
+                                      const CityGmlSchema* schema, int workers, base::Progress& progress,
+                                      FindingLog& log) {
+  std::vector<std::pair<std::string, Format>> files;
+  std::size_t number = 0;
+  for (const auto& [path, file] : record.files)
+    if (const auto t = surroundings_path(path))
+      if (number++ % static_cast<std::size_t>(std::max(sample, 1)) == 0) files.emplace_back(path, t->format);
+  SurroundingsTotals totals;
+  if (files.empty()) return totals;
+  progress.begin("surroundings", files.size(), "files");
+  std::vector<SurroundingsFile> results(files.size());
+  std::unordered_set<std::string> ids[kTileFormats];
+  base::ordered_parallel(
+      files.size(), workers, static_cast<std::size_t>(workers + 1),
+      [&](std::size_t i) { results[i] = checked_file(folder, files[i].first, files[i].second, schema); },
+      [&](std::size_t i) {
+        ++totals.files;
+        totals.objects += results[i].ids.size();
+        log.add(std::move(results[i].findings));
+        for (const std::string& id : results[i].ids)
+          if (!ids[static_cast<std::size_t>(files[i].second)].insert(id).second)
+            log.add(Check::object_doubled, files[i].first, id, "stands twice, in one file or in several");
+        results[i] = {};
+        progress.advance_to(i + 1);
+      });
+  return totals;
+}
+
+}  // namespace blockrand::validate
