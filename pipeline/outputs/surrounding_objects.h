@@ -14,7 +14,7 @@
 namespace blockrand::outputs {
 
 /// What stands behind a tile's name in files of its surroundings.
-inline constexpr std::string_view kSurroundingsFile = "_surroundings";
+inline constexpr std::string_view kSurroundingsEnding = "_surroundings";
 
 /// X(constant, element of CityGML, type of CityJSON). CityJSON has no generic objects; CityGML has no type of its own for
 /// runways, platforms and car parks, but their traffic areas.

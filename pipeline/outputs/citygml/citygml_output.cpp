@@ -51,7 +51,7 @@ class CityGmlOutput : public OutputOf<bool> {
 
   base::PublishedFile write_surroundings(const FinishedTile& tile) const {
     const CityGmlOptions options = citygml_options(tile.region, context_);
-    return write_pieces("citygml/" + tile.name + std::string(kSurroundingsFile) + ".gml", [&](const Sink& sink) {
+    return write_pieces("citygml/" + tile.name + std::string(kSurroundingsEnding) + ".gml", [&](const Sink& sink) {
       write_surroundings_gml(*tile.surroundings, *context_.surroundings, tile.region.tile, options, sink);
     });
   }

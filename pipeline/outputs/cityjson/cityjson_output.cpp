@@ -72,7 +72,7 @@ class CityJsonOutput : public OutputOf<bool> {
     CityJsonOptions options = cityjson_options(context_, model_name(tile.region.tile));
     options.data_time.clear();  // nothing tells when what stands around was edited
     return write_text_file(
-        "cityjson/" + tile.name + std::string(kSurroundingsFile) + ".city.jsonl",
+        "cityjson/" + tile.name + std::string(kSurroundingsEnding) + ".city.jsonl",
         write_surroundings_cityjson(*tile.surroundings, *context_.surroundings, tile.region.tile, options), context_);
   }
 
