@@ -24,8 +24,12 @@ namespace key = model::osm_key;
 constexpr double kFollowStep = 5;
 /// m: how deep bodies reach into the ground, so that no gap shows on a slope.
 constexpr double kSunk = 0.3;
-// Bridges. m: clearance of streets below [RASt 06: 4.50], thickness of a deck, height of railings [RAS-Q: 1.0 to 1.3]; slope at most.
-constexpr double kClearance = 4.5, kDeck = 0.6, kRailing = 1.1, kRailingWidth = 0.08, kMostSlope = 0.06;
+// Bridges. m: clearance above streets and railways [RASt 06: 4.50], above water and green [E], thickness of a deck, height of railings
+// [RAS-Q: 1.0 to 1.3]; slopes at most.
+constexpr double kClearance = 4.5, kLowClearance = 0.6, kDeck = 0.6, kRailing = 1.1, kRailingWidth = 0.08;
+constexpr double kMostSlope = 0.06, kMostRailSlope = 0.025;
+/// m from the ends of a bridge within which the ground is that of its approach, not what it crosses.
+constexpr double kApproach = 8;
 // m: half of the opening where a street or a gate is a point of a barrier.
 constexpr double kStreetOpening = 1.75, kGateOpening = 0.6;
 
@@ -157,24 +161,23 @@ std::string_view material_of(const TagOf& tag, std::string_view usual) {
   return usual;
 }
 
-/// A fence: posts and two rails.
-void add_fence(const OffsetLine& line, double height, double width, const GroundAtPlace& ground,
-               const std::function<bool(std::size_t)>& takes, std::vector<FlatPolygon>& out) {
-  const auto base = [&](std::size_t i) { return ground(line.points()[i]).height; };
+/// A fence: posts and two rails. \param base  m, the height that it stands on, by point of the line
+/// \param sunk  m, how deep its posts go
+void add_fence(const OffsetLine& line, double height, double width, const std::function<double(std::size_t)>& base,
+               double sunk, const std::function<bool(std::size_t)>& takes, std::vector<FlatPolygon>& out) {
   for (const double at : {0.35 * height, height - 0.06})
     add_strip(
         line, -width / 2, width / 2, [&](std::size_t i) { return std::pair(base(i) + at - 0.05, base(i) + at + 0.05); },
         takes, false, out);
   constexpr double kPostDistance = 2.5, kPost = 0.05;
-  const auto post = [&](Point2 p) {
-    const double z = ground(p).height;
+  const auto post = [&](Point2 p, double z) {
     const auto corner = [&](double x, double y, double up) { return Point3{p.x + x, p.y + y, model::snap(z + up)}; };
     constexpr std::array<std::array<double, 2>, 4> kCorners{
         {{-kPost, -kPost}, {kPost, -kPost}, {kPost, kPost}, {-kPost, kPost}}};
     for (std::size_t i = 0; i < 4; ++i) {
       const auto& a = kCorners[i];
       const auto& b = kCorners[(i + 1) % 4];
-      out.push_back({{corner(a[0], a[1], -kSunk), corner(b[0], b[1], -kSunk), corner(b[0], b[1], height),
+      out.push_back({{corner(a[0], a[1], -sunk), corner(b[0], b[1], -sunk), corner(b[0], b[1], height),
                       corner(a[0], a[1], height)},
                      {}});
     }
@@ -187,7 +190,7 @@ void add_fence(const OffsetLine& line, double height, double width, const Ground
     const bool last = i + 2 == line.size() || !takes(i + 1);
     for (int k = 0; k < gaps + (last ? 1 : 0); ++k) {
       const double f = static_cast<double>(k) / gaps;
-      post(model::snap(Point2{a.x + f * (b.x - a.x), a.y + f * (b.y - a.y)}));
+      post(model::snap(Point2{a.x + f * (b.x - a.x), a.y + f * (b.y - a.y)}), base(i) + f * (base(i + 1) - base(i)));
     }
   }
 }
@@ -312,7 +315,9 @@ class Bodies {
           return !ground_({(a.x + b.x) / 2, (a.y + b.y) / 2}).building;
         };
         if (kind->body == BodyClass::fence) {
-          add_fence(line, height, width, ground_, takes, faces);
+          add_fence(
+              line, height, width, [&](std::size_t i) { return ground_(line.points()[i]).height; }, kSunk, takes,
+              faces);
         } else {
           add_strip(
               line, -width / 2, width / 2,
@@ -373,21 +378,32 @@ class Bodies {
       const OffsetLine line(points);
       if (line.size() < 2) continue;
       const double first = ground_(run.start).height, last = ground_(run.end).height;
+      const bool rail = !tag_(key::kRailway).empty();
       double lowest = std::min(first, last);
-      for (const Point2 p : points) lowest = std::min(lowest, ground_(p).height);
+      bool crosses_traffic = false;
+      for (std::size_t i = 0; i < line.size(); ++i) {
+        const GroundAt at = ground_(points[i]);
+        lowest = std::min(lowest, at.height);
+        const double s = run.before + (run.reversed ? line.length() - line.along(i) : line.along(i));
+        using enum model::GroundClass;
+        const bool traffic = at.ground == carriageway || at.ground == parking_lane || at.ground == rail_bed ||
+                             at.ground == cycle_way || at.ground == footway;
+        crosses_traffic = crosses_traffic || (traffic && s > kApproach && s < run.length - kApproach);
+      }
       const std::optional<double> layer = length_of(tag_(key::kLayer));
-      const double clearance =
-          std::max(0.0, kClearance * std::clamp(layer.value_or(1), 1.0, 4.0) - (std::min(first, last) - lowest));
+      const double asked = crosses_traffic ? kClearance * std::clamp(layer.value_or(1), 1.0, 4.0) : kLowClearance;
+      const double clearance = std::max(0.0, asked - (std::min(first, last) - lowest));
+      const double slope = rail ? kMostRailSlope : kMostSlope;
       std::vector<double> deck;
       for (std::size_t i = 0; i < line.size(); ++i) {
         const double s = run.before + (run.reversed ? line.length() - line.along(i) : line.along(i));
         const double t = run.length > 0 ? s / run.length : 0;
-        const double rise = std::min({clearance, kMostSlope * s, kMostSlope * std::max(0.0, run.length - s)});
+        const double rise = std::min({clearance, slope * s, slope * std::max(0.0, run.length - s)});
         deck.push_back(first + t * (last - first) + rise);
       }
       const auto takes = [&](std::size_t i) { return is_own(line, i); };
       double left = -1.7, right = 1.7;
-      if (!tag_(key::kRailway).empty()) {
+      if (rail) {
         add_strip(
             line, left, right, [&](std::size_t i) { return std::pair(deck[i], deck[i]); }, takes, false,
             body(BodyClass::bridge, "ballast").faces);
@@ -406,11 +422,15 @@ class Bodies {
       add_strip(
           line, left - 0.3, right + 0.3, [&](std::size_t i) { return std::pair(deck[i] - kDeck, deck[i] - 0.01); },
           takes, true, structure);
-      for (const double side : {left - 0.2, right + 0.2})
-        add_strip(
-            line, side - kRailingWidth / 2, side + kRailingWidth / 2,
-            [&](std::size_t i) { return std::pair(deck[i] - 0.01, deck[i] + kRailing); }, takes, false,
+      for (const double side : {left - 0.2, right + 0.2}) {
+        std::vector<Point2> beside;
+        for (std::size_t i = 0; i < line.size(); ++i) beside.push_back(line.beside(i, side));
+        beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+        if (beside.size() != line.size()) continue;  // a bend that is tighter than the deck is wide
+        add_fence(
+            OffsetLine(beside), kRailing, kRailingWidth, [&](std::size_t i) { return deck[i]; }, 0.05, takes,
             body(BodyClass::bridge, "metal").faces);
+      }
     }
     drop_empty();
   }

@@ -12,6 +12,7 @@ namespace blockrand::surroundings {
 /// The ground at a place in plan.
 struct GroundAt {
   bool building = false;
+  model::GroundClass ground = model::GroundClass::land;
   double height = 0;  ///< m above the height reference, of the surface that lies there
 };
 using GroundAtPlace = std::function<GroundAt(model::Point2)>;
@@ -22,7 +23,8 @@ using GroundAtPlace = std::function<GroundAt(model::Point2)>;
 ///   street is one of its points; none within buildings.
 /// * railway=*: two rails of the gauge.
 /// * bridge=* of streets and railways: a deck between the grounds at both ends of the run of bridges that it belongs to, raised as
-///   far as its layer and a slope of 6 % allow where the ground below is not low already; with its strips, and railings.
+///   far as its layer, what it crosses and a slope of 6 % (railways: 2.5 %) allow where the ground below is not low already; with its
+///   strips, and railings.
 std::vector<model::SurroundingBody> line_bodies(const SurroundingInputs& in, const ClaimFinder& claims,
                                                 const Thing& thing, const std::function<bool(model::Point2)>& is_own,
                                                 const GroundAtPlace& ground);

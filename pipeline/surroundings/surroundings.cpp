@@ -36,6 +36,34 @@ bool claim_holds(const geometry::AreaClaim& claim, Point2 p) {
   return holds(polygon, p);
 }
 
+/// Where a mapped thing stands that the carriageway, as wide as it is assumed to be, has swallowed: at the nearest kerb, if that is near.
+/// Bollards and gates stand where vehicles go.
+Point2 beside_traffic(Point2 place, std::string_view kind, const GroundAtPlace& ground) {
+  using enum model::GroundClass;
+  const auto is_traffic = [](const GroundAt& at) {
+    return !at.building && (at.ground == carriageway || at.ground == parking_lane || at.ground == cycle_way);
+  };
+  if (kind == "bollard" || kind == "gate" || kind == "lift_gate" || kind == "block" || kind == "planter") return place;
+  if (!is_traffic(ground(place))) return place;
+  constexpr double kHalf = 0.5, kDiagonal = 0.70710678118654752, kCosine = 0.86602540378443865;
+  constexpr double kDirections[16][2] = {{1, 0},  {kCosine, kHalf},   {kDiagonal, kDiagonal},   {kHalf, kCosine},
+                                         {0, 1},  {-kHalf, kCosine},  {-kDiagonal, kDiagonal},  {-kCosine, kHalf},
+                                         {-1, 0}, {-kCosine, -kHalf}, {-kDiagonal, -kDiagonal}, {-kHalf, -kCosine},
+                                         {0, -1}, {kHalf, -kCosine},  {kDiagonal, -kDiagonal},  {kCosine, -kHalf}};
+  constexpr double kStep = 0.5, kBehindKerb = 0.4;
+  constexpr int kMostSteps = 7;  // a lane: what stands farther in stands on an island that nobody mapped
+  for (int step = 1; step <= kMostSteps; ++step)
+    for (const auto& d : kDirections) {
+      const double r = step * kStep;
+      const GroundAt at = ground({place.x + r * d[0], place.y + r * d[1]});
+      if (at.building || is_traffic(at) || at.ground == water) continue;
+      const Point2 behind = model::snap(Point2{place.x + (r + kBehindKerb) * d[0], place.y + (r + kBehindKerb) * d[1]});
+      const GroundAt there = ground(behind);
+      return there.building || is_traffic(there) ? model::snap(Point2{place.x + r * d[0], place.y + r * d[1]}) : behind;
+    }
+  return place;
+}
+
 }  // namespace
 
 SurroundingsFinder::SurroundingsFinder(const SurroundingInputs& inputs, SurroundingOptions layers, HeightAt height,
@@ -165,12 +193,13 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
   const GroundAtPlace ground_at = [&](Point2 p) {
     PlanBox at;
     at.include(p);
-    GroundAt found{false, height_at(p)};
+    GroundAt found{false, model::GroundClass::land, height_at(p)};
     for (const std::uint32_t c : claim_boxes.near(at, 0)) {  // the strongest first
       const geometry::AreaClaim& claim = claims.claims[c];
       if (!claim_holds(claim, p)) continue;
       const GroundLabel& label = claims.labels[claim.label];
       found.building = label.building;
+      found.ground = label.ground;
       found.height += static_cast<double>(label.offset);
       break;
     }
@@ -179,6 +208,7 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
   for (PlannedObject& object : planned) {
     if (!is_own(object.place)) continue;
     SurroundingState& state = states[object.object.object];
+    object.place = beside_traffic(object.place, in_.catalogue.shown().shapes[object.object.shape].kind, ground_at);
     const GroundAt ground = ground_at(object.place);
     if (ground.building) {
       if (state == SurroundingState::not_modelled) state = SurroundingState::covered;

@@ -64,13 +64,13 @@ std::optional<TilePath> any_tile_path(std::string_view path) {
 
 std::optional<TilePath> tile_path(std::string_view path) {
   std::optional<TilePath> found = any_tile_path(path);
-  if (found && found->format != Format::gltf && found->tile.ends_with(kSurroundings)) found.reset();
+  if (found && found->tile.ends_with(kSurroundings)) found.reset();
   return found;
 }
 
 std::optional<TilePath> surroundings_path(std::string_view path) {
   std::optional<TilePath> found = any_tile_path(path);
-  if (!found || found->format == Format::gltf || !found->tile.ends_with(kSurroundings)) return std::nullopt;
+  if (!found || !found->tile.ends_with(kSurroundings)) return std::nullopt;
   found->tile.resize(found->tile.size() - kSurroundings.size());
   return found;
 }

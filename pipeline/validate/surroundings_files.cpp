@@ -14,6 +14,7 @@
 #include "pipeline/base/parallel.h"
 #include "pipeline/validate/bytes_of_file.h"
 #include "pipeline/validate/checked_json.h"
+#include "pipeline/validate/glb_container.h"
 
 namespace blockrand::validate {
 namespace {
@@ -37,9 +38,14 @@ bool is_one_of(const std::string_view (&names)[N], std::string_view name) {
 class Checker {
  public:
   Checker(Format format, const std::string& name, SurroundingsFile& out)
-      : rule_(format == Format::citygml ? Check::citygml_rule : Check::cityjson_rule), name_(name), out_(out) {}
+      : rule_(format == Format::citygml    ? Check::citygml_rule
+              : format == Format::cityjson ? Check::cityjson_rule
+                                           : Check::glb_rule),
+        name_(name),
+        out_(out) {}
 
   void rule(std::string object, std::string what) { add(rule_, std::move(object), std::move(what)); }
+  void bounds(std::string what) { add(Check::tile_bounds, {}, std::move(what)); }
   void unreadable(std::string what) { add(Check::file_unreadable, {}, std::move(what)); }
 
  private:
@@ -191,8 +197,72 @@ void read_sequence(std::string_view text, Checker& check, SurroundingsFile& out)
   }
 }
 
+// ---- GLB
+
+class GlbReader {
+ public:
+  GlbReader(std::string_view bytes, const std::string& name, Checker& check, SurroundingsFile& out)
+      : glb_(bytes, name, out.findings), check_(check), out_(out) {}
+
+  void read(const TilesetEntry* entry) {
+    if (!glb_.readable()) return;
+    const Json* metadata = member(member(&glb_.json(), "extensions"), "EXT_structural_metadata");
+    const Json* table = element(member(metadata, "propertyTables"), 0);
+    if (!table || text(member(table, "class")) != "surrounding")
+      return check_.rule({}, "it has no table of surroundings");
+    rows_ = out_.objects = whole(member(table, "count")).value_or(0);
+    if (!member(member(member(&glb_.json(), "asset"), "extras"), "georeference"))
+      check_.rule({}, "it does not say where it lies");
+    const Json* nodes = member(&glb_.json(), "nodes");
+    for (std::uint64_t n = 0; n < length(nodes); ++n) node(*element(nodes, n));
+    if (!entry) return;
+    const Overhang over = overhang(*entry, points_);
+    if (over.own > kVolumeTolerance || over.ancestor > kVolumeTolerance)
+      check_.bounds(fmt::format("{:.3f} m outside of its tile", std::max(over.own, over.ancestor)));
+  }
+
+ private:
+  void node(const Json& node) {
+    const Json* instances = member(member(&node, "extensions"), "EXT_mesh_gpu_instancing");
+    if (instances) {
+      const Json* attributes = member(instances, "attributes");
+      features(member(attributes, "_FEATURE_ID_0"));
+      points(member(attributes, "TRANSLATION"));
+      return;
+    }
+    const Json* meshes = member(&glb_.json(), "meshes");
+    const auto number = whole(member(&node, "mesh"));
+    if (!number) return;
+    const Json* primitives = member(element(meshes, *number), "primitives");
+    for (std::uint64_t p = 0; p < length(primitives); ++p) {
+      const Json* attributes = member(element(primitives, p), "attributes");
+      features(member(attributes, "_FEATURE_ID_0"));
+      points(member(attributes, "POSITION"));
+    }
+  }
+  void features(const Json* index) {
+    const GlbContainer::Accessor* ids = glb_.accessor(index);
+    if (!ids) return check_.rule({}, "features have no rows");
+    for (std::size_t i = 0; i < ids->count; ++i)
+      if (const double row = glb_.value(*ids, i); !(row >= 0 && row < static_cast<double>(rows_)))
+        return check_.rule({}, "a feature names a row that is not there");
+  }
+  void points(const Json* index) {
+    const GlbContainer::Accessor* places = glb_.accessor(index);
+    if (!places || places->width != 3) return check_.rule({}, "a mesh has no positions");
+    for (std::size_t i = 0; i < places->count; ++i)
+      points_.push_back({glb_.value(*places, i, 0), -glb_.value(*places, i, 2), glb_.value(*places, i, 1)});
+  }
+
+  GlbContainer glb_;
+  Checker& check_;
+  SurroundingsFile& out_;
+  std::uint64_t rows_ = 0;
+  std::vector<model::Point3> points_;  ///< east, north, up
+};
+
 SurroundingsFile checked_file(const std::string& folder, const std::string& path, Format format,
-                              const CityGmlSchema* schema) {
+                              const CityGmlSchema* schema, const Tileset* tileset) {
   SurroundingsFile out;
   const std::string full = (std::filesystem::path(folder) / path).string();
   if (!std::filesystem::exists(full)) return out;
@@ -202,7 +272,16 @@ SurroundingsFile checked_file(const std::string& folder, const std::string& path
     out.findings.push_back({Check::file_unreadable, path, "", why});
     return out;
   }
-  out = read_surroundings(format, *bytes, path);
+  const TilesetEntry* entry = nullptr;
+  if (format == Format::gltf && tileset && tileset->readable) {
+    const auto known = tileset->entries.find(path);
+    if (known == tileset->entries.end()) {
+      out.findings.push_back({Check::tile_missing, path, "", "the tileset does not name it"});
+      return out;
+    }
+    entry = &known->second;
+  }
+  out = read_surroundings(format, *bytes, path, entry);
   if (schema && format == Format::citygml)
     for (Finding& finding : schema->validate(*bytes, path)) out.findings.push_back(std::move(finding));
   return out;
@@ -210,19 +289,22 @@ SurroundingsFile checked_file(const std::string& folder, const std::string& path
 
 }  // namespace
 
-SurroundingsFile read_surroundings(Format format, std::string_view bytes, const std::string& name) {
+SurroundingsFile read_surroundings(Format format, std::string_view bytes, const std::string& name,
+                                   const TilesetEntry* entry) {
   SurroundingsFile out;
   Checker check(format, name, out);
   if (format == Format::citygml)
     read_gml(bytes, check, out);
+  else if (format == Format::gltf)
+    GlbReader(bytes, name, check, out).read(entry);
   else
     read_sequence(bytes, check, out);
   return out;
 }
 
 SurroundingsTotals check_surroundings(const std::string& folder, const BuildRecord& record, int sample,
-                                      const CityGmlSchema* schema, int workers, base::Progress& progress,
-                                      FindingLog& log) {
+                                      const CityGmlSchema* schema, const Tileset* tileset, int workers,
+                                      base::Progress& progress, FindingLog& log) {
   std::vector<std::pair<std::string, Format>> files;
   std::size_t number = 0;
   for (const auto& [path, file] : record.files)
@@ -235,10 +317,10 @@ SurroundingsTotals check_surroundings(const std::string& folder, const BuildReco
   std::unordered_set<std::string> ids[kTileFormats];
   base::ordered_parallel(
       files.size(), workers, static_cast<std::size_t>(workers + 1),
-      [&](std::size_t i) { results[i] = checked_file(folder, files[i].first, files[i].second, schema); },
+      [&](std::size_t i) { results[i] = checked_file(folder, files[i].first, files[i].second, schema, tileset); },
       [&](std::size_t i) {
         ++totals.files;
-        totals.objects += results[i].ids.size();
+        totals.objects += results[i].ids.size() + results[i].objects;
         log.add(std::move(results[i].findings));
         for (const std::string& id : results[i].ids)
           if (!ids[static_cast<std::size_t>(files[i].second)].insert(id).second)

@@ -342,7 +342,8 @@ class Run {
 
   void check_surroundings() {
     const SurroundingsTotals all =
-        validate::check_surroundings(o_.folder, record_, o_.sample, schema_.get(), workers_, progress_, log());
+        validate::check_surroundings(o_.folder, record_, o_.sample, schema_.get(),
+                                     record_.has("gltf") ? &tileset_ : nullptr, workers_, progress_, log());
     if (all.files == 0) return;
     checked("surroundings", schema_ ? "ids given once, references, OGC schemas" : "ids given once, references",
             all.objects, fmt::format("objects in {} files", all.files));

@@ -107,7 +107,7 @@ TEST(SurroundingsFiles, OfABuild) {
   write("citygml/15_1_2_surroundings.gml");
   base::Progress progress;
   FindingLog log;
-  const auto check = [&] { return check_surroundings(folder, record, 1, nullptr, 2, progress, log); };
+  const auto check = [&] { return check_surroundings(folder, record, 1, nullptr, nullptr, 2, progress, log); };
   EXPECT_EQ(check().objects, 17u);
   EXPECT_EQ(log.count(), 0u);
   write("citygml/15_1_4_surroundings.gml");
