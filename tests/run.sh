@@ -39,7 +39,7 @@ if command -v npm >/dev/null 2>&1; then
     echo "tests: installing the npm packages of tests/validators/package.json into $build/node_modules"
     cp tests/validators/package.json "$build/package.json"
     # shellcheck disable=SC2086 # none or one
-    if ! (cd "$build" && npm install --no-audit --no-fund --loglevel=error $omit); then
+    if ! (cd "$build" && npm install --no-audit --no-fund --loglevel=error --fetch-retries=1 --fetch-timeout=60000 $omit); then
       rm -f "$build/package.json"
       echo "tests: WARNING: npm could not install them; the Khronos checks and 3d-tiles-renderer will be SKIPPED" >&2
     fi

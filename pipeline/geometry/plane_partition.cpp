@@ -68,10 +68,48 @@ struct Seen {
   std::uint32_t label = 0;
   bool crosses = false;                     ///< an edge of it comes into the square
   bool covers = false;                      ///< where none does: the square lies inside
+  bool right_of_lines = false;              ///< AreaClaim::right_of_lines; edges have their direction then
   std::vector<std::array<Grid2, 2>> edges;  ///< that a ray along a latitude of the square may meet
 };
 
+/// Squared distance of a place from a segment, in steps, and where the nearest point lies: -1 at its start, 1 at its end, else 0.
+std::pair<double, int> distance_to(Grid2 a, Grid2 b, Grid2 p) {
+  const double dx = static_cast<double>(b.x - a.x), dy = static_cast<double>(b.y - a.y);
+  const double px = static_cast<double>(p.x - a.x), py = static_cast<double>(p.y - a.y);
+  const double along = px * dx + py * dy, square = dx * dx + dy * dy;
+  if (along <= 0) return {px * px + py * py, -1};
+  if (along >= square) return {(px - dx) * (px - dx) + (py - dy) * (py - dy), 1};
+  const double across = px * dy - py * dx;
+  return {across * across / square, 0};
+}
+
+/// Right of the nearest of directed segments.
+bool is_right(std::span<const std::array<Grid2, 2>> segments, Grid2 p) {
+  constexpr double kReach = kCoastReach * model::kGridStepsPerMetre;
+  double least = kReach * kReach;
+  const std::array<Grid2, 2>* nearest = nullptr;
+  int end = 0;
+  for (const auto& segment : segments) {
+    const auto [square, place] = distance_to(segment[0], segment[1], p);
+    if (square < least) least = square, nearest = &segment, end = place;
+  }
+  if (nearest == nullptr) return false;
+  const bool right = orientation((*nearest)[0], (*nearest)[1], p) < 0;
+  if (end == 0) return right;
+  // Nearest is a point where the line bends: the segment on its other side has a word, too.
+  for (const auto& segment : segments) {
+    if (end < 0 ? segment[1] != (*nearest)[0] : segment[0] != (*nearest)[1]) continue;
+    const auto& before = end < 0 ? segment : *nearest;
+    const auto& after = end < 0 ? *nearest : segment;
+    const bool left_of_both = orientation(before[0], before[1], p) >= 0 && orientation(after[0], after[1], p) >= 0;
+    const bool left_of_one = orientation(before[0], before[1], p) >= 0 || orientation(after[0], after[1], p) >= 0;
+    return !(orientation(before[0], before[1], after[1]) >= 0 ? left_of_both : left_of_one);
+  }
+  return right;
+}
+
 bool is_inside(const Seen& claim, Grid2 p) {
+  if (claim.right_of_lines) return is_right(claim.edges, p);
   bool inside = false;
   for (const auto& [a, b] : claim.edges) {  // a.y < b.y
     if (p.y < a.y || p.y >= b.y) continue;
@@ -115,10 +153,26 @@ class Partition {
   };
 
   void see(const AreaClaim& claim) {
-    if (hidden_ || !claim.box.near(square_, 1)) return;
+    if (hidden_ || !claim.box.near(square_, claim.right_of_lines ? kCoastReach : 1)) return;
     Seen seen;
     seen.label = claim.label;
     const std::size_t before = lines_.size();
+    if (claim.right_of_lines) {
+      seen.right_of_lines = true;
+      for (const std::vector<Point2>& line : claim.rings)
+        for (std::size_t i = 1; i < line.size(); ++i) {
+          const Grid2 a = to_grid(line[i - 1]), b = to_grid(line[i]);
+          if (a == b) continue;
+          add_clipped(a, b, box_, lines_);
+          seen.edges.push_back({a, b});
+        }
+      seen.crosses = lines_.size() > before;
+      seen.covers = !seen.crosses && is_inside(seen, {(box_.low.x + box_.high.x) / 2, (box_.low.y + box_.high.y) / 2});
+      if (!seen.crosses && !seen.covers) return;
+      hidden_ = hidden_ || seen.covers;
+      claims_.push_back(std::move(seen));
+      return;
+    }
     for (const std::vector<Point2>& ring : claim.rings)
       for (std::size_t i = 0; i < ring.size(); ++i) {
         Grid2 a = to_grid(ring[i]), b = to_grid(ring[(i + 1) % ring.size()]);
@@ -260,6 +314,24 @@ class Partition {
 };
 
 }  // namespace
+
+bool claim_holds(const AreaClaim& claim, Point2 place) {
+  const Grid2 p = to_grid(place);
+  if (claim.right_of_lines) {
+    std::vector<std::array<Grid2, 2>> segments;
+    for (const std::vector<Point2>& line : claim.rings)
+      for (std::size_t i = 1; i < line.size(); ++i) segments.push_back({to_grid(line[i - 1]), to_grid(line[i])});
+    return is_right(segments, p);
+  }
+  bool inside = false;
+  for (const std::vector<Point2>& ring : claim.rings)
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      Grid2 a = to_grid(ring[i]), b = to_grid(ring[(i + 1) % ring.size()]);
+      if (b.y < a.y) std::swap(a, b);
+      if (p.y >= a.y && p.y < b.y && orientation(a, b, p) > 0) inside = !inside;
+    }
+  return inside;
+}
 
 std::vector<PartitionPiece> partition_of(const PlanBox& square, std::span<const AreaClaim> claims,
                                          std::span<const DividingLine> lines) {

@@ -19,7 +19,16 @@ struct AreaClaim {
   std::uint32_t label = 0;  ///< areas of one label make one piece where they touch
   std::vector<std::vector<model::Point2>> rings;
   PlanBox box;  ///< of the rings
+  /// `rings` are lines, open or closed, with land on their left as coasts have it: what lies on the right of the nearest of them is
+  /// inside, as far as it is within kCoastReach of one.
+  bool right_of_lines = false;
 };
+
+/// m. Beyond, nobody knows on which side of a coast a place lies.
+inline constexpr double kCoastReach = 2000;
+
+/// Whether a place is inside of what an area claims. Borders may count either way.
+bool claim_holds(const AreaClaim& claim, model::Point2 place);
 
 struct PartitionPiece {
   std::uint32_t label = kNoLabel;  ///< kNoLabel: nobody claims it

@@ -35,6 +35,18 @@ double strength_of(std::string_view highway) {
   return static_cast<double>(kOrder.end() - at);
 }
 
+CrossingMarking crossing_of(const TagOf& tag) {
+  if (tag(key::kHighway) != "crossing") return CrossingMarking::none;
+  const std::string_view painted = tag(key::kCrossingMarkings), kind = tag(key::kCrossing);
+  if (painted == "no" || kind == "no" || kind == "unmarked" || kind == "informal") return CrossingMarking::none;
+  if (painted.starts_with("zebra") || kind == "zebra") return CrossingMarking::zebra;
+  if (!painted.empty()) return CrossingMarking::lines;
+  if (kind == "marked" || kind == "uncontrolled") return CrossingMarking::zebra;
+  return kind == "traffic_signals" ? CrossingMarking::lines : CrossingMarking::none;
+}
+
+bool is_coast(const TagOf& tag) { return tag(key::kNatural) == "coastline"; }
+
 /// m.
 double surroundings_length(std::span<const Point2> line) {
   double sum = 0;
@@ -55,11 +67,12 @@ struct ClaimFinder::Entry {
   double strength = 0;  ///< more is stronger
   GroundLabel label;
   std::vector<std::vector<Point2>> rings;
+  bool sea = false;  ///< AreaClaim::right_of_lines
 };
 
 namespace {
 
-constexpr int kPassageRank = 0, kBuildingRank = 1, kFirstGroundRank = 2, kBlockRank = 1000;
+constexpr int kPassageRank = 0, kBuildingRank = 1, kFirstGroundRank = 2, kSeaRank = 999, kBlockRank = 1000;
 
 int rank_of(GroundClass ground) { return kFirstGroundRank + static_cast<int>(ground); }
 
@@ -80,6 +93,9 @@ ClaimFinder::ClaimFinder(const SurroundingInputs& inputs) : in_(inputs) {
   for (std::uint32_t f = 0; f < e.features.size(); ++f) {
     const model::Feature& feature = e.features[f];
     const TagOf tag = tags_of(f);
+    if (feature.id.type == model::OsmType::node)
+      if (const CrossingMarking marking = crossing_of(tag); marking != CrossingMarking::none)
+        crossings_.emplace_back(feature.id.number, marking);
     const std::optional<SurroundingKind> kind = kind_of(feature, tag, in_.catalogue);
     if (!kind) continue;
     Thing thing{f, *kind, hidden_state(feature, tag)};
@@ -104,6 +120,7 @@ ClaimFinder::ClaimFinder(const SurroundingInputs& inputs) : in_(inputs) {
           bridge_ends_.emplace_back(node, static_cast<std::uint32_t>(things_.size()));
     }
     if (feature.id.type == model::OsmType::node && !tag(key::kBarrier).empty()) gates_.push_back(feature.id.number);
+    if (is_coast(tag)) coasts_.push_back(static_cast<std::uint32_t>(things_.size()));
     things_.push_back(thing);
     boxes.push_back(box);
   }
@@ -111,6 +128,7 @@ ClaimFinder::ClaimFinder(const SurroundingInputs& inputs) : in_(inputs) {
   std::ranges::sort(street_nodes_);
   std::ranges::sort(bridge_ends_);
   std::ranges::sort(gates_);
+  std::ranges::sort(crossings_);
   boxes.clear();
   for (const context::Block& block : in_.context.blocks)
     boxes.push_back(block.gives_ratios() ? geometry::box_of(block.polygon.outer.points) : PlanBox{});
@@ -150,6 +168,11 @@ bool ClaimFinder::claims_ground(const Thing& thing) const {
   const model::Feature& feature = in_.extract.features[thing.feature];
   if (feature.area) return in_.catalogue.ground_of(tags_of(thing.feature)) != nullptr;
   return thing.kind == road || thing.kind == railway || thing.kind == water;
+}
+
+CrossingMarking ClaimFinder::crossing_at(std::int64_t node) const {
+  const auto at = std::ranges::lower_bound(crossings_, node, {}, &std::pair<std::int64_t, CrossingMarking>::first);
+  return at != crossings_.end() && at->first == node ? at->second : CrossingMarking::none;
 }
 
 double ClaimFinder::opening_at(std::int64_t node, double street, double gate) const {
@@ -387,6 +410,20 @@ void ClaimFinder::add_blocks(const PlanBox& box, std::vector<Entry>& out) const 
   }
 }
 
+/// The sea lies on the right of coasts. It is weaker than all that is mapped: quays and piers stand in it.
+void ClaimFinder::add_sea(const PlanBox& box, std::vector<Entry>& out) const {
+  Entry entry;
+  entry.rank = kSeaRank, entry.sea = true;
+  entry.label = {
+      .ground = GroundClass::water, .object = {}, .material = in_.catalogue.material("water"), .offset = -kBank};
+  for (const std::uint32_t t : coasts_) {
+    if (!boxes_.box(t).near(box, geometry::kCoastReach)) continue;
+    for (std::vector<Point2>& line : lines_of(things_[t]))
+      if (line.size() >= 2) entry.rings.push_back(std::move(line));
+  }
+  if (!entry.rings.empty()) out.push_back(std::move(entry));
+}
+
 GroundClaims ClaimFinder::claims_in(const PlanBox& box) const {
   std::vector<Entry> entries;
   add_passages(box, entries);
@@ -443,6 +480,7 @@ GroundClaims ClaimFinder::claims_in(const PlanBox& box) const {
         break;
     }
   }
+  add_sea(box, entries);
   add_blocks(box, entries);
   std::ranges::stable_sort(entries, [](const Entry& a, const Entry& b) {
     return std::tuple(a.rank, -a.strength, a.label.object) < std::tuple(b.rank, -b.strength, b.label.object);
@@ -463,6 +501,7 @@ GroundClaims ClaimFinder::claims_in(const PlanBox& box) const {
     for (const auto& ring : entry.rings)
       for (const Point2 p : ring) claim.box.include(p);
     claim.rings = std::move(entry.rings);
+    claim.right_of_lines = entry.sea;
     out.claims.push_back(std::move(claim));
   }
   return out;

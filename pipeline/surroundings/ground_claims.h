@@ -58,12 +58,17 @@ inline constexpr float kKerb = 0.12f, kBank = 0.5f;
 /// m: how far from its line the ground of a street reaches at most, and buildings stand that make a street one of a town.
 inline constexpr double kStreetReach = 40, kBuiltUpReach = 25;
 
+/// How a crossing is painted.
+enum class CrossingMarking : std::uint8_t { none, lines, zebra };
+
 /// Finds what claims the ground of a place. Read-only once made, safe to share between threads.
 class ClaimFinder {
  public:
   explicit ClaimFinder(const SurroundingInputs& inputs);
 
   const std::vector<Thing>& things() const { return things_; }
+  /// The coastlines among them.
+  const std::vector<std::uint32_t>& coasts() const { return coasts_; }
   /// The things at most `distance` metres from a box along both axes, ascending by feature.
   std::vector<std::uint32_t> things_near(const geometry::PlanBox& box, double distance) const {
     return boxes_.near(box, distance);
@@ -77,6 +82,10 @@ class ClaimFinder {
 
   /// Whether a feature's tags claim any ground.
   bool claims_ground(const Thing& thing) const;
+  /// How many ways of streets meet at a node: an end once, a node within a way twice.
+  std::size_t streets_at(std::int64_t node) const;
+  /// What a node of a street is as a crossing.
+  CrossingMarking crossing_at(std::int64_t node) const;
   /// m: half of the opening of a barrier at one of its nodes: `street` where one of a street is, `gate` where a gate is, else 0.
   double opening_at(std::int64_t node, double street, double gate) const;
 
@@ -100,16 +109,16 @@ class ClaimFinder {
   void add_area(const Thing& thing, std::vector<Entry>& out) const;
   void add_passages(const geometry::PlanBox& box, std::vector<Entry>& out) const;
   void add_buildings(const geometry::PlanBox& box, std::vector<Entry>& out) const;
+  void add_sea(const geometry::PlanBox& box, std::vector<Entry>& out) const;
   void add_blocks(const geometry::PlanBox& box, std::vector<Entry>& out) const;
-  /// How many ways of streets meet at a node.
-  std::size_t streets_at(std::int64_t node) const;
-
   SurroundingInputs in_;
   std::vector<Thing> things_;
-  geometry::BoxIndex boxes_;   ///< of things_
-  geometry::BoxIndex blocks_;  ///< of ContextExtract::blocks
+  std::vector<std::uint32_t> coasts_;  ///< things that are coastlines
+  geometry::BoxIndex boxes_;           ///< of things_
+  geometry::BoxIndex blocks_;          ///< of ContextExtract::blocks
   geometry::BoxIndex passages_;
   std::vector<std::pair<std::int64_t, std::uint32_t>> bridge_ends_;  ///< node and thing, ascending
+  std::vector<std::pair<std::int64_t, CrossingMarking>> crossings_;  ///< nodes, ascending
   std::vector<std::int64_t> gates_;                                  ///< nodes, ascending
   std::vector<std::int64_t> street_nodes_;  ///< of ways of streets, an end once, a node within twice; ascending
 };

@@ -22,6 +22,9 @@ namespace key = model::osm_key;
 
 /// m. Longer pieces are cut where the ground is uneven, so that a body follows it.
 constexpr double kFollowStep = 5;
+// Markings, m [RMS, FGSV 1993: narrow lines 0.12, within towns dashes of 3 with gaps of 6; crossings of stripes of 0.50, 3 to 4 long].
+constexpr double kLine = 0.12, kDash = 3, kDashPeriod = 9, kStripe = 0.5, kZebraLength = 3.5, kPaint = 0.012;
+constexpr double kJunctionFree = 12, kCrossingFree = 5;
 /// m: how deep bodies reach into the ground, so that no gap shows on a slope.
 constexpr double kSunk = 0.3;
 // Bridges. m: clearance above streets and railways [RASt 06: 4.50], above water and green [E], thickness of a deck, height of railings
@@ -247,6 +250,8 @@ class Bodies {
         if (!feature_.area) bridge();
         break;
       case SurroundingKind::road:
+        if (!feature_.area) markings();
+        break;
       case SurroundingKind::aeroway:
       case SurroundingKind::aerialway:
       case SurroundingKind::parking:
@@ -354,6 +359,93 @@ class Bodies {
             return std::pair(z - (tram ? 0.05 : 0), z + top);
           },
           [&](std::size_t i) { return is_own(line, i); }, false, faces);
+    drop_empty();
+  }
+
+  /// A rectangle on the carriageway around a point of a line's direction. \param along, across  m, of its sides
+  void paint(Point2 centre, Point2 direction, double along, double across, std::vector<FlatPolygon>& faces) const {
+    if (!is_own_(centre)) return;
+    const GroundAt at = ground_(centre);
+    if (at.building || at.ground != model::GroundClass::carriageway) return;
+    FlatPolygon face;
+    constexpr double kCorners[4][2] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
+    for (const auto& c : kCorners) {
+      const Point2 p = model::snap(Point2{centre.x + c[0] * along * direction.x - c[1] * across * direction.y,
+                                          centre.y + c[0] * along * direction.y + c[1] * across * direction.x});
+      const GroundAt corner = ground_(p);
+      if (corner.building || corner.ground != model::GroundClass::carriageway) return;
+      face.outer.push_back({p.x, p.y, model::snap(corner.height + kPaint)});
+    }
+    faces.push_back({{face.outer[0], face.outer[1], face.outer[2]}, {}});
+    faces.push_back({{face.outer[0], face.outer[2], face.outer[3]}, {}});
+  }
+
+  /// Lines between lanes, and crossings.
+  void markings() {
+    const std::optional<StreetProfile> profile = street_profile(tag_, true, in_.catalogue);
+    if (!profile || profile->carriageway_right - profile->carriageway_left < 4) return;
+    const std::string_view highway = tag_(key::kHighway);
+    constexpr std::array<std::string_view, 10> kMarked{"motorway",       "trunk",         "primary",    "secondary",
+                                                       "tertiary",       "motorway_link", "trunk_link", "primary_link",
+                                                       "secondary_link", "tertiary_link"};
+    const double left = profile->carriageway_left, right = profile->carriageway_right;
+    int lanes = profile->lanes;
+    const bool main_street = std::ranges::find(kMarked, highway) != kMarked.end();
+    const std::string_view oneway = tag_(key::kOneway);
+    if (lanes == 0 && main_street && (oneway.empty() || oneway == "no") && right - left >= 5.5) lanes = 2;
+    if (!main_street && (lanes < 2 || right - left < 2.75 * lanes)) lanes = 0;
+    std::vector<FlatPolygon>& faces = body(BodyClass::marking, "marking_white").faces;
+    const auto rings = in_.extract.rings_of(feature_.rings);
+    const auto lines = claims_.lines_of(thing_);
+    for (std::size_t l = 0; l < lines.size(); ++l) {
+      const std::vector<Point2>& line = lines[l];
+      const auto nodes = in_.extract.nodes_of(rings[l]);
+      if (line.size() < 2 || nodes.size() != line.size()) continue;
+      const OffsetLine offset(line);
+      std::vector<double> junctions, crossings;  // places along the line, m
+      for (std::size_t i = 0; i < line.size(); ++i) {
+        if (claims_.streets_at(nodes[i]) > 2) junctions.push_back(offset.along(i));
+        const CrossingMarking marking = claims_.crossing_at(nodes[i]);
+        if (marking == CrossingMarking::none) continue;
+        crossings.push_back(offset.along(i));
+        const std::size_t from = i > 0 ? i - 1 : 0, to = std::min(i + 1, line.size() - 1);
+        const double dx = line[to].x - line[from].x, dy = line[to].y - line[from].y, length = std::hypot(dx, dy);
+        if (!(length > 0)) continue;
+        const Point2 d{dx / length, dy / length};
+        const auto at = [&](double ahead, double to_right) {
+          return Point2{line[i].x + ahead * d.x + to_right * d.y, line[i].y + ahead * d.y - to_right * d.x};
+        };
+        if (marking == CrossingMarking::zebra) {
+          for (double side = left + kStripe; side < right - kStripe / 2; side += 2 * kStripe)
+            paint(at(0, side), d, kZebraLength, kStripe, faces);
+        } else {
+          // Two broken lines across, dashes of a length with their gaps.
+          for (const double ahead : {-kZebraLength / 2, kZebraLength / 2})
+            for (double side = left + kStripe; side < right - kStripe / 2; side += 2 * kStripe)
+              paint(at(ahead, side), d, kLine, kStripe, faces);
+        }
+      }
+      const auto is_free = [&](double s) {
+        return std::ranges::none_of(junctions, [&](double j) { return std::fabs(j - s) < kJunctionFree; }) &&
+               std::ranges::none_of(crossings, [&](double c) { return std::fabs(c - s) < kCrossingFree; });
+      };
+      for (int lane = 1; lane < lanes; ++lane) {
+        const double side = left + (right - left) * lane / lanes;
+        for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+          const double from = offset.along(i), to = offset.along(i + 1), length = to - from;
+          if (!(length > 0)) continue;
+          const Point2 d{(line[i + 1].x - line[i].x) / length, (line[i + 1].y - line[i].y) / length};
+          // Dashes lie where they lie along the whole line, whatever its points.
+          for (double s = std::floor(from / kDashPeriod) * kDashPeriod + kDash / 2; s < to; s += kDashPeriod) {
+            if (s < from || !is_free(s)) continue;
+            const double own = std::min({kDash, 2 * (s - from), 2 * (to - s)});
+            if (own < 1) continue;
+            paint({line[i].x + (s - from) * d.x + side * d.y, line[i].y + (s - from) * d.y - side * d.x}, d, own, kLine,
+                  faces);
+          }
+        }
+      }
+    }
     drop_empty();
   }
 

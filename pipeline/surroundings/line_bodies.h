@@ -21,6 +21,7 @@ using GroundAtPlace = std::function<GroundAt(model::Point2)>;
 ///
 /// * barrier=*: a strip as high and wide as tags say, else as usual for its kind, which follows the ground; open where a gate or a
 ///   street is one of its points; none within buildings.
+/// * highway=*: lines between lanes, crossings that are marked.
 /// * railway=*: two rails of the gauge.
 /// * bridge=* of streets and railways: a deck between the grounds at both ends of the run of bridges that it belongs to, raised as
 ///   far as its layer, what it crosses and a slope of 6 % (railways: 2.5 %) allow where the ground below is not low already; with its

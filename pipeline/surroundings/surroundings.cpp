@@ -26,16 +26,6 @@ Point2 middle_of(const std::vector<std::vector<Point2>>& lines) {
   return box.empty() ? Point2{} : model::snap(box.centre());
 }
 
-bool claim_holds(const geometry::AreaClaim& claim, Point2 p) {
-  model::Polygon polygon;  // by parity: which ring is the outer one does not matter
-  for (const auto& points : claim.rings) {
-    model::Ring ring;
-    ring.points = points;
-    polygon.holes.push_back(std::move(ring));
-  }
-  return holds(polygon, p);
-}
-
 /// Where a mapped thing stands that the carriageway, as wide as it is assumed to be, has swallowed: at the nearest kerb, if that is near.
 /// Bollards and gates stand where vehicles go.
 Point2 beside_traffic(Point2 place, std::string_view kind, const GroundAtPlace& ground) {
@@ -106,7 +96,12 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
   const GroundClaims claims = claims_.claims_in(box);
   const geometry::BoxIndex claim_boxes([&] {
     std::vector<PlanBox> boxes;
-    for (const geometry::AreaClaim& claim : claims.claims) boxes.push_back(claim.box);
+    for (const geometry::AreaClaim& claim : claims.claims) {
+      boxes.push_back(claim.box);
+      if (!claim.right_of_lines) continue;  // it reaches far beyond its lines
+      boxes.back().minimum = {claim.box.minimum.x - geometry::kCoastReach, claim.box.minimum.y - geometry::kCoastReach};
+      boxes.back().maximum = {claim.box.maximum.x + geometry::kCoastReach, claim.box.maximum.y + geometry::kCoastReach};
+    }
     return boxes;
   }());
   GroundLabel land;
@@ -196,7 +191,7 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
     GroundAt found{false, model::GroundClass::land, height_at(p)};
     for (const std::uint32_t c : claim_boxes.near(at, 0)) {  // the strongest first
       const geometry::AreaClaim& claim = claims.claims[c];
-      if (!claim_holds(claim, p)) continue;
+      if (!geometry::claim_holds(claim, p)) continue;
       const GroundLabel& label = claims.labels[claim.label];
       found.building = label.building;
       found.ground = label.ground;
@@ -227,6 +222,13 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
       if (!bodies.empty()) states[id] = SurroundingState::modelled, kinds[id] = thing.kind;
       for (model::SurroundingBody& body : bodies) out.bodies.push_back(std::move(body));
     }
+  const bool has_sea = std::ranges::any_of(out.surfaces, [](const model::GroundSurface& s) {
+    return s.ground == model::GroundClass::water && s.object.number == 0;
+  });
+  if (has_sea)
+    for (const std::uint32_t t : claims_.coasts())
+      if (const auto coast = states.find(in_.extract.features[claims_.things()[t].feature].id); coast != states.end())
+        coast->second = SurroundingState::modelled;
   for (const model::OsmId id : with_ground)
     if (const auto state = states.find(id); state != states.end()) state->second = SurroundingState::modelled;
   for (const auto& [id, state] : states) {

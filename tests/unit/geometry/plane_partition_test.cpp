@@ -140,6 +140,35 @@ TEST(PlanePartition, WhatCoversTheSquareHasNoEdgeInIt) {
   EXPECT_DOUBLE_EQ(area_of(pieces, 4), kSide * kSide - 400);
 }
 
+AreaClaim coast(std::vector<std::vector<Point2>> lines) {
+  AreaClaim out = claim(9, std::move(lines));
+  out.right_of_lines = true;
+  return out;
+}
+
+TEST(PlanePartition, TheSeaLiesOnTheRightOfACoast) {
+  // Eastwards, with a spit to the south and back: land in the north.
+  const std::vector<AreaClaim> claims = {rectangle(1, 10, 30, 20, 70),
+                                         coast({{{-300, 50}, {40, 50}, {40, 20}, {60, 20}, {60, 50}, {300, 50}}})};
+  const auto pieces = partition_of(square_at(0), claims);
+  EXPECT_DOUBLE_EQ(area_of(pieces, 9), 50 * 100 - 20 * 30 - 10 * 20);
+  EXPECT_DOUBLE_EQ(area_of(pieces, 1), 400);
+  EXPECT_DOUBLE_EQ(area_of(pieces, kNoLabel), 50 * 100 + 20 * 30 - 10 * 20);
+}
+
+TEST(PlanePartition, ASquareWithoutCoastLiesOnTheSideOfTheNearest) {
+  const double far = kSide + kCoastReach;
+  const auto whole = [&](const AreaClaim& sea) { return area_of(partition_of(square_at(0), std::vector{sea}), 9); };
+  EXPECT_EQ(whole(coast({{{-300, 500}, {300, 500}}})), kSide * kSide);  // the coast runs in the north, land behind it
+  EXPECT_EQ(whole(coast({{{300, 500}, {-300, 500}}})), 0);              // the other way
+  EXPECT_EQ(whole(coast({{{-300, far}, {300, far}}})), 0);              // too far to tell
+  // Two coasts: the nearer one tells. An island in the sea, whose corner is the nearest point.
+  EXPECT_EQ(whole(coast({{{300, 500}, {-300, 500}}, {{-300, -20}, {300, -20}}})), 0);
+  EXPECT_EQ(whole(coast({{{200, 200}, {300, 200}, {300, 300}, {200, 300}, {200, 200}}})), kSide * kSide);
+  EXPECT_EQ(whole(coast({{{200, 200}, {200, 300}, {300, 300}, {300, 200}, {200, 200}}})),
+            0);  // a lake, mapped as a coast
+}
+
 TEST(PlanePartition, LinesOfATerrainCutPieces) {
   const PlanBox box = square_at(0);
   const DividingLine line{0, {{box.minimum.x + 50, box.minimum.y}, {box.minimum.x + 50, box.maximum.y}}, {}};
