@@ -130,7 +130,6 @@ namespace blockrand::model {
   X(kPublicTransport, "public_transport", "platforms and stops")                                                  \
   X(kPlayground, "playground", "play equipment: told, not modelled")                                              \
   X(kGolf, "golf", "greens, tees, bunkers, fairways")                                                             \
-  X(kSport, "sport", "what a pitch is for")                                                                       \
   X(kLeafType, "leaf_type", "needleleaved, broadleaved")                                                          \
   X(kLeafCycle, "leaf_cycle", "evergreen, deciduous")                                                             \
   X(kGenus, "genus", "of a tree: conifer or not")                                                                 \
@@ -139,12 +138,9 @@ namespace blockrand::model {
   X(kDiameterCrown, "diameter_crown", "of a tree, m")                                                             \
   X(kCircumference, "circumference", "of a trunk, m: the height of a tree where nobody tells it")                 \
   X(kMaterial, "material", "of a wall, a fence, a bench")                                                         \
-  X(kColour, "colour", "of the same")                                                                             \
   X(kFenceType, "fence_type", "what a fence looks like")                                                          \
   X(kDirection, "direction", "where a bench, a sign faces")                                                       \
-  X(kStepCount, "step_count", "number of steps")                                                                  \
-  X(kGauge, "gauge", "of a railway, mm")                                                                          \
-  X(kShelter, "shelter", "a stop has one")
+  X(kGauge, "gauge", "of a railway, mm")
 // clang-format on
 
 namespace osm_key {

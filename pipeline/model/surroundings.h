@@ -166,10 +166,9 @@ enum class SurroundingState : std::uint8_t {
   below_ground,  ///< tunnels, culverts, what lies below
   indoors,
   not_modelled,  ///< of a kind that has no shape here
-  no_geometry,   ///< its points are missing, or it has no length or area
 };
-inline constexpr std::string_view kSurroundingStateNames[] = {"modelled", "covered",      "below_ground",
-                                                              "indoors",  "not_modelled", "no_geometry"};
+inline constexpr std::string_view kSurroundingStateNames[] = {"modelled", "covered", "below_ground", "indoors",
+                                                              "not_modelled"};
 inline constexpr std::size_t kSurroundingStateCount = std::size(kSurroundingStateNames);
 
 struct SurroundingOutcome {

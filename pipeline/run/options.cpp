@@ -198,6 +198,7 @@ base::OptionTable<B> place_and_ground() {
           {.name = "surroundings",
            .key = "surroundings",
            .argument = "LAYERS",
+           .choices = {"on", "off", "ground", "bodies", "objects"},
            .help = "what stands and lies around the houses: on, off, or some of ground, bodies, objects with commas "
                    "between them (docs/surroundings.md)",
            .record = OptionRecord::yes},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -37,27 +38,42 @@ void check_scale(const georef::Projection& projection, const georef::Crs& crs, g
 }
 
 /// Tiles without buildings between those that have some, as far as something is mapped in them: the surroundings need no house.
-void add_empty_tiles(const model::Extract& extract, std::vector<footprints::Shard>& shards) {
-  if (shards.empty()) return;
-  const int level = shards.front().tile.level;
-  model::TileId low = shards.front().tile, high = low;
+/// \param asked  the one tile that is built, which is there in any case
+void add_empty_tiles(const model::Extract& extract, const std::optional<TileChoice>& asked,
+                     std::vector<footprints::Shard>& shards) {
   std::set<model::TileId> known;
-  for (const footprints::Shard& shard : shards) {
-    known.insert(shard.tile);
-    low.x = std::min(low.x, shard.tile.x), low.y = std::min(low.y, shard.tile.y);
-    high.x = std::max(high.x, shard.tile.x), high.y = std::max(high.y, shard.tile.y);
-  }
-  using enum model::FeatureKind;
-  for (const model::Feature& feature : extract.features) {
-    if (!feature.is(street) && !feature.is(land_use) && !feature.is(water) && !feature.is(railway) &&
-        !feature.is(tree) && !feature.is(surrounding))
-      continue;
-    for (const model::MappedRing& ring : extract.rings_of(feature.rings))
-      for (const model::Location at : extract.vertices_of(ring)) {
-        const model::TileId tile = georef::tile_of(at, level);
-        if (tile.x < low.x || tile.x > high.x || tile.y < low.y || tile.y > high.y) continue;
-        if (known.insert(tile).second) shards.push_back({tile, {}});
+  for (const footprints::Shard& shard : shards) known.insert(shard.tile);
+  const auto add = [&](const model::TileId& tile) {
+    if (known.insert(tile).second) shards.push_back({tile, {}});
+  };
+  if (asked) {
+    if (!asked->is_area()) add(asked->id);
+  } else if (!shards.empty()) {
+    const int level = shards.front().tile.level;
+    model::TileId low = shards.front().tile, high = low;
+    for (const footprints::Shard& shard : shards) {
+      low.x = std::min(low.x, shard.tile.x), low.y = std::min(low.y, shard.tile.y);
+      high.x = std::max(high.x, shard.tile.x), high.y = std::max(high.y, shard.tile.y);
+    }
+    using enum model::FeatureKind;
+    for (const model::Feature& feature : extract.features) {
+      if (!feature.is(street) && !feature.is(land_use) && !feature.is(water) && !feature.is(railway) &&
+          !feature.is(tree) && !feature.is(barrier) && !feature.is(surrounding))
+        continue;
+      for (const model::MappedRing& ring : extract.rings_of(feature.rings)) {
+        // All tiles that the box of a segment meets.
+        std::optional<model::TileId> before;
+        for (const model::Location at : extract.vertices_of(ring)) {
+          const model::TileId tile = georef::tile_of(at, level), from = before.value_or(tile);
+          for (std::uint32_t y = std::max(std::min(from.y, tile.y), low.y);
+               y <= std::min(std::max(from.y, tile.y), high.y); ++y)
+            for (std::uint32_t x = std::max(std::min(from.x, tile.x), low.x);
+                 x <= std::min(std::max(from.x, tile.x), high.x); ++x)
+              add({level, x, y});
+          before = tile;
+        }
       }
+    }
   }
   std::ranges::sort(shards, {}, &footprints::Shard::tile);
 }
@@ -122,7 +138,7 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
   model::Report report;
   std::vector<footprints::Shard> shards =
       footprints::make_shards(extract, report, tile ? tile->tile_level : footprints::kTileLevel);
-  if (options.surroundings.any()) add_empty_tiles(extract, shards);
+  if (options.surroundings.any()) add_empty_tiles(extract, tile, shards);
   repair::KeptNodes kept(extract);
   footprints::RepairedExtract repaired =
       footprints::repair_extract(extract, shards, located.projection, kept, options.repair, workers, progress, memo);

@@ -16,11 +16,15 @@ using geometry::PlanBox;
 using model::FeatureKind;
 using model::GroundClass;
 using model::Point2;
-namespace key = model::osm_key;
+namespace osm_key = model::osm_key;
 
 // m. Widths of waters that nobody measured: half of what the wiki of OpenStreetMap calls usual is seen from a bridge.
 constexpr double kRiverWidth = 12, kCanalWidth = 8, kStreamWidth = 2, kDitchWidth = 1;
 /// m. Beds of a track: ballast of standard gauge is 3 to 4 m wide at its top (Deutsche Bahn, Ril 800.0130: 3.1 to 3.8 m).
+/// m: how much of a street is judged at a time: whether it is one of a town. A block is as long.
+constexpr double kJudgedPiece = 150;
+/// Of one segment: ways across oceans are no streets.
+constexpr double kMostCuts = 2000;
 constexpr double kTrackBed = 3.4, kTramBed = 2.6;
 // Of a block, up to the middle of its streets: from where on yards are paved, and gardens are none.
 constexpr double kPavedShare = 0.30, kGardenShare = 0.04;
@@ -35,9 +39,18 @@ double strength_of(std::string_view highway) {
   return static_cast<double>(kOrder.end() - at);
 }
 
+/// m, of a waterway that nobody measured; 0: of none that has ground.
+double usual_width(std::string_view waterway) {
+  return waterway == "river"                          ? kRiverWidth
+         : waterway == "canal"                        ? kCanalWidth
+         : waterway == "stream"                       ? kStreamWidth
+         : waterway == "ditch" || waterway == "drain" ? kDitchWidth
+                                                      : 0;
+}
+
 CrossingMarking crossing_of(const TagOf& tag) {
-  if (tag(key::kHighway) != "crossing") return CrossingMarking::none;
-  const std::string_view painted = tag(key::kCrossingMarkings), kind = tag(key::kCrossing);
+  if (tag(osm_key::kHighway) != "crossing") return CrossingMarking::none;
+  const std::string_view painted = tag(osm_key::kCrossingMarkings), kind = tag(osm_key::kCrossing);
   if (painted == "no" || kind == "no" || kind == "unmarked" || kind == "informal") return CrossingMarking::none;
   if (painted.starts_with("zebra") || kind == "zebra") return CrossingMarking::zebra;
   if (!painted.empty()) return CrossingMarking::lines;
@@ -45,7 +58,16 @@ CrossingMarking crossing_of(const TagOf& tag) {
   return kind == "traffic_signals" ? CrossingMarking::lines : CrossingMarking::none;
 }
 
-bool is_coast(const TagOf& tag) { return tag(key::kNatural) == "coastline"; }
+/// m: how far beyond its points a thing reaches.
+double reach_of(SurroundingKind kind, const model::Feature& feature, const TagOf& tag) {
+  if (feature.area) return 0;
+  if (kind == SurroundingKind::road || kind == SurroundingKind::railway || kind == SurroundingKind::bridge)
+    return kStreetReach;
+  if (kind != SurroundingKind::water) return 5;
+  return length_of(tag(osm_key::kWidth)).value_or(kRiverWidth) / 2 + 1;
+}
+
+bool is_coast(const TagOf& tag) { return tag(osm_key::kNatural) == "coastline"; }
 
 /// m.
 double surroundings_length(std::span<const Point2> line) {
@@ -105,6 +127,10 @@ ClaimFinder::ClaimFinder(const SurroundingInputs& inputs) : in_(inputs) {
         const Point2 p = in_.projection.forward(at);
         if (std::isfinite(p.x) && std::isfinite(p.y)) box.include(p);
       }
+    if (const double reach = reach_of(*kind, feature, tag); reach > 0 && !box.empty()) {
+      box.minimum = {box.minimum.x - reach, box.minimum.y - reach};
+      box.maximum = {box.maximum.x + reach, box.maximum.y + reach};
+    }
     if ((*kind == SurroundingKind::road || *kind == SurroundingKind::bridge) && !feature.area && !thing.hidden)
       for (const model::MappedRing& ring : e.rings_of(feature.rings)) {
         const auto nodes = e.nodes_of(ring);
@@ -119,7 +145,7 @@ ClaimFinder::ClaimFinder(const SurroundingInputs& inputs) : in_(inputs) {
         for (const std::int64_t node : {nodes.front(), nodes.back()})
           bridge_ends_.emplace_back(node, static_cast<std::uint32_t>(things_.size()));
     }
-    if (feature.id.type == model::OsmType::node && !tag(key::kBarrier).empty()) gates_.push_back(feature.id.number);
+    if (feature.id.type == model::OsmType::node && !tag(osm_key::kBarrier).empty()) gates_.push_back(feature.id.number);
     if (is_coast(tag)) coasts_.push_back(static_cast<std::uint32_t>(things_.size()));
     things_.push_back(thing);
     boxes.push_back(box);
@@ -140,6 +166,13 @@ ClaimFinder::ClaimFinder(const SurroundingInputs& inputs) : in_(inputs) {
 
 TagOf ClaimFinder::tags_of(std::uint32_t feature) const {
   return [&e = in_.extract, range = in_.extract.features[feature].tags](std::string_view k) { return e.tag(range, k); };
+}
+
+bool ClaimFinder::is_closed(const model::Feature& feature) const {
+  if (feature.area) return true;
+  if (feature.rings.count != 1) return false;
+  const auto nodes = in_.extract.nodes_of(in_.extract.rings_of(feature.rings)[0]);
+  return nodes.size() > 3 && nodes.front() == nodes.back();
 }
 
 std::vector<std::vector<Point2>> ClaimFinder::lines_of(const Thing& thing) const {
@@ -166,8 +199,11 @@ std::size_t ClaimFinder::streets_at(std::int64_t node) const {
 bool ClaimFinder::claims_ground(const Thing& thing) const {
   using enum SurroundingKind;
   const model::Feature& feature = in_.extract.features[thing.feature];
-  if (feature.area) return in_.catalogue.ground_of(tags_of(thing.feature)) != nullptr;
-  return thing.kind == road || thing.kind == railway || thing.kind == water;
+  const TagOf tag = tags_of(thing.feature);
+  if (feature.area) return thing.kind != bridge && in_.catalogue.ground_of(tag) != nullptr;
+  if (thing.kind == road) return street_profile(tag, true, in_.catalogue).has_value();
+  if (thing.kind == railway) return is_track(tag(osm_key::kRailway));
+  return thing.kind == water && (usual_width(tag(osm_key::kWaterway)) > 0 || is_coast(tag));
 }
 
 CrossingMarking ClaimFinder::crossing_at(std::int64_t node) const {
@@ -187,33 +223,104 @@ ClaimFinder::BridgeRun ClaimFinder::bridge_run(const Thing& thing) const {
   const auto nodes_of = [&](std::uint32_t t) {
     return e.nodes_of(e.rings_of(e.features[things_[t].feature].rings)[0]);
   };
-  const auto line_of = [&](std::uint32_t t) { return lines_of(things_[t])[0]; };
+  const auto line_of = [&](std::uint32_t t) {
+    const std::vector<std::vector<Point2>> lines = lines_of(things_[t]);
+    return lines.empty() ? std::vector<Point2>() : lines[0];
+  };
+  const auto layer_of = [&](std::uint32_t t) {
+    return length_of(tags_of(things_[t].feature)(osm_key::kLayer)).value_or(1);
+  };
   BridgeRun run;
-  const std::vector<Point2> own = line_of(index);
-  run.length = surroundings_length(own);
-  run.start = own.front(), run.end = own.back();
-  // Onwards from both ends.
-  constexpr int kMostBridges = 100;
+  run.line = line_of(index);
+  run.length = surroundings_length(run.line);
+  run.layer = layer_of(index);
+  const BridgeRun alone = run;
+  // Onwards from both ends. Where the run is too long, whichever bridge asks, each of its bridges is one by itself.
+  std::vector<std::uint32_t> known{index};
   for (const bool forward : {false, true}) {
     std::uint32_t at = index;
     std::int64_t node = forward ? nodes_of(index).back() : nodes_of(index).front();
-    for (int i = 0; i < kMostBridges; ++i) {
+    while (run.length <= kMostRun) {
       const auto first = std::ranges::lower_bound(bridge_ends_, std::pair(node, std::uint32_t{0}));
       std::vector<std::uint32_t> meet;
       for (auto b = first; b != bridge_ends_.end() && b->first == node; ++b) meet.push_back(b->second);
       if (meet.size() != 2) break;
       const std::uint32_t next = meet[0] == at ? meet[1] : meet[0];
-      if (next == at || next == index) break;
-      const std::vector<Point2> line = line_of(next);
+      if (std::ranges::find(known, next) != known.end()) break;
+      known.push_back(next);
+      std::vector<Point2> line = line_of(next);
+      if (line.size() < 2) break;
       const bool begins = nodes_of(next).front() == node;
-      run.length += surroundings_length(line);
-      if (!forward) run.before += surroundings_length(line);
-      (forward ? run.end : run.start) = begins ? line.back() : line.front();
+      const double length = surroundings_length(line);
+      run.length += length;
+      run.layer = std::max(run.layer, layer_of(next));
+      if (begins != forward) std::ranges::reverse(line);
+      if (forward) {
+        run.line.insert(run.line.end(), line.begin(), line.end());
+      } else {
+        run.before += length;
+        run.line.insert(run.line.begin(), line.begin(), line.end());
+      }
       node = begins ? nodes_of(next).back() : nodes_of(next).front();
       at = next;
     }
   }
+  if (run.length > kMostRun) run = alone;
+  if (run.line.empty()) return run;
+  run.start = run.line.front(), run.end = run.line.back();
+  run.crosses_traffic = run.length > kLookedThrough || crosses_traffic(run);
   return run;
+}
+
+bool ClaimFinder::crosses_traffic(const BridgeRun& run) const {
+  const GroundClaims claims = claims_in(geometry::box_of(run.line));
+  double along = 0;
+  for (std::size_t i = 1; i < run.line.size(); ++i) {
+    const Point2 a = run.line[i - 1], b = run.line[i];
+    const double length = std::hypot(b.x - a.x, b.y - a.y);
+    for (double s = 0; s < length; s += 1) {
+      if (along + s < kApproach || along + s > run.length - kApproach) continue;
+      const Point2 p{a.x + s / length * (b.x - a.x), a.y + s / length * (b.y - a.y)};
+      for (const geometry::AreaClaim& claim : claims.claims) {
+        if (p.x < claim.box.minimum.x || p.x > claim.box.maximum.x || p.y < claim.box.minimum.y ||
+            p.y > claim.box.maximum.y)
+          continue;
+        if (!geometry::claim_holds(claim, p)) continue;
+        using enum GroundClass;
+        const GroundLabel& label = claims.labels[claim.label];
+        if (!label.building && (label.ground == carriageway || label.ground == parking_lane ||
+                                label.ground == rail_bed || label.ground == cycle_way || label.ground == footway))
+          return true;
+        break;
+      }
+    }
+    along += length;
+  }
+  return false;
+}
+
+std::vector<std::vector<Point2>> ClaimFinder::judged_pieces(const std::vector<Point2>& line) {
+  std::vector<std::vector<Point2>> out;
+  std::vector<Point2> piece;
+  double length = 0;
+  for (const Point2 p : line) {
+    if (!piece.empty()) {
+      const Point2 from = piece.back();
+      const double own = std::hypot(p.x - from.x, p.y - from.y);
+      const double cuts = std::min(std::floor((length + own) / kJudgedPiece), kMostCuts);
+      for (double c = 1; c <= cuts; ++c) {
+        const double s = c * kJudgedPiece - length;
+        if (s <= 0 || s >= own) continue;
+        piece.push_back(model::snap(Point2{from.x + s / own * (p.x - from.x), from.y + s / own * (p.y - from.y)}));
+        out.push_back(piece);
+        piece = {piece.back()};
+      }
+      length = cuts > 0 ? (length + own) - cuts * kJudgedPiece : length + own;
+    }
+    piece.push_back(p);
+  }
+  if (piece.size() >= 2) out.push_back(piece);
+  return out;
 }
 
 bool ClaimFinder::is_built_up(std::span<const Point2> line) const {
@@ -228,7 +335,7 @@ bool ClaimFinder::is_built_up(std::span<const Point2> line) const {
   return found >= wanted;
 }
 
-void ClaimFinder::add_street(const Thing& thing, std::vector<Entry>& out) const {
+void ClaimFinder::add_street(const Thing& thing, const PlanBox& box, std::vector<Entry>& out) const {
   const model::Feature& feature = in_.extract.features[thing.feature];
   const TagOf tag = tags_of(thing.feature);
   const auto rings = in_.extract.rings_of(feature.rings);
@@ -236,57 +343,66 @@ void ClaimFinder::add_street(const Thing& thing, std::vector<Entry>& out) const 
   for (std::size_t l = 0; l < lines.size() && l < rings.size(); ++l) {
     const std::vector<Point2>& line = lines[l];
     if (line.size() < 2) continue;
-    const std::optional<StreetProfile> profile = street_profile(tag, is_built_up(line), in_.catalogue);
-    if (!profile) continue;
     const auto nodes = in_.extract.nodes_of(rings[l]);
-    const auto end = [&](std::int64_t node, bool outer) {
+    const auto end = [&](std::int64_t node) {
       // At a junction of three, what lies beside a carriageway would reach into the others.
-      return outer && streets_at(node) > 2 ? geometry::LineEnd::flat : geometry::LineEnd::round;
+      return streets_at(node) > 2 ? geometry::LineEnd::flat : geometry::LineEnd::round;
     };
-    // Strips of a class on both sides are one claim from the far side of the one to that of the other: what lies between them
-    // is stronger.
-    struct Reach {
-      const StreetStrip* strip = nullptr;
-      double left = 0, right = 0;
-    };
-    std::vector<Reach> reaches;
-    for (const StreetStrip& strip : profile->strips) {
-      auto known = std::ranges::find_if(reaches, [&](const Reach& r) {
-        return r.strip->ground == strip.ground && r.strip->material == strip.material;
-      });
-      if (known == reaches.end()) known = reaches.insert(known, {&strip, 0, 0});
-      known->left = std::max(known->left, -strip.left), known->right = std::max(known->right, strip.right);
+    // What stands around is asked piece by piece: a way may be long, and what a place looks like depends on what is near.
+    for (const std::vector<Point2>& piece : judged_pieces(line)) {
+      if (!geometry::box_of(piece).near(box, kStreetReach)) continue;
+      add_street_piece(feature.id, tag, piece,
+                       piece.front() == line.front() ? end(nodes.front()) : geometry::LineEnd::round,
+                       piece.back() == line.back() ? end(nodes.back()) : geometry::LineEnd::round, out);
     }
-    for (const Reach& reach : reaches) {
-      if (reach.left <= 0 && reach.right <= 0) continue;
-      const GroundClass ground = reach.strip->ground;
-      const bool is_lane = ground == GroundClass::carriageway || ground == GroundClass::parking_lane;
-      std::vector<std::vector<std::vector<Point2>>> polygons;
-      add_polygons(
-          geometry::line_area(line, reach.left, reach.right, end(nodes.front(), !is_lane), end(nodes.back(), !is_lane)),
-          polygons);
-      for (auto& rings_of_polygon : polygons) {
-        Entry entry;
-        entry.rank = rank_of(ground);
-        entry.strength = strength_of(tag(key::kHighway)) + 1e-3 * (reach.left + reach.right);
-        entry.label = {.ground = ground,
-                       .object = feature.id,
-                       .material = reach.strip->material,
-                       .offset = is_lane && profile->kerbed ? -kKerb : 0};
-        entry.rings = std::move(rings_of_polygon);
-        out.push_back(std::move(entry));
-      }
+  }
+}
+
+void ClaimFinder::add_street_piece(model::OsmId id, const TagOf& tag, const std::vector<Point2>& line,
+                                   geometry::LineEnd start, geometry::LineEnd end, std::vector<Entry>& out) const {
+  const std::optional<StreetProfile> profile = street_profile(tag, is_built_up(line), in_.catalogue);
+  if (!profile) return;
+  // Strips of a class on both sides are one claim from the far side of the one to that of the other: what lies between them
+  // is stronger.
+  struct Reach {
+    const StreetStrip* strip = nullptr;
+    double left = 0, right = 0;
+  };
+  std::vector<Reach> reaches;
+  for (const StreetStrip& strip : profile->strips) {
+    auto known = std::ranges::find_if(reaches, [&](const Reach& r) {
+      return r.strip->ground == strip.ground && r.strip->material == strip.material;
+    });
+    if (known == reaches.end()) known = reaches.insert(known, {&strip, 0, 0});
+    known->left = std::max(known->left, -strip.left), known->right = std::max(known->right, strip.right);
+  }
+  for (const Reach& reach : reaches) {
+    if (reach.left <= 0 && reach.right <= 0) continue;
+    const GroundClass ground = reach.strip->ground;
+    const bool is_lane = ground == GroundClass::carriageway || ground == GroundClass::parking_lane;
+    std::vector<std::vector<std::vector<Point2>>> polygons;
+    add_polygons(geometry::line_area(line, reach.left, reach.right, is_lane ? geometry::LineEnd::round : start,
+                                     is_lane ? geometry::LineEnd::round : end),
+                 polygons);
+    for (auto& rings_of_polygon : polygons) {
+      Entry entry;
+      entry.rank = rank_of(ground);
+      entry.strength = strength_of(tag(osm_key::kHighway)) + 1e-3 * (reach.left + reach.right);
+      entry.label = {.ground = ground,
+                     .object = id,
+                     .material = reach.strip->material,
+                     .offset = is_lane && profile->kerbed ? -kKerb : 0};
+      entry.rings = std::move(rings_of_polygon);
+      out.push_back(std::move(entry));
     }
   }
 }
 
 void ClaimFinder::add_railway(const Thing& thing, std::vector<Entry>& out) const {
   const TagOf tag = tags_of(thing.feature);
-  const std::string_view kind = tag(key::kRailway);
+  const std::string_view kind = tag(osm_key::kRailway);
   const bool tram = kind == "tram";
-  if (kind != "rail" && kind != "light_rail" && kind != "narrow_gauge" && kind != "subway" && kind != "funicular" &&
-      kind != "preserved" && !tram)
-    return;
+  if (!is_track(kind)) return;
   for (const std::vector<Point2>& line : lines_of(thing)) {
     if (line.size() < 2) continue;
     const double half = (tram ? kTramBed : kTrackBed) / 2;
@@ -296,7 +412,7 @@ void ClaimFinder::add_railway(const Thing& thing, std::vector<Entry>& out) const
       Entry entry;
       entry.rank = rank_of(GroundClass::rail_bed);
       entry.strength = tram ? 0 : 1;
-      const std::string_view surface = tag(key::kSurface);
+      const std::string_view surface = tag(osm_key::kSurface);
       entry.label = {
           .ground = GroundClass::rail_bed,
           .object = in_.extract.features[thing.feature].id,
@@ -309,14 +425,10 @@ void ClaimFinder::add_railway(const Thing& thing, std::vector<Entry>& out) const
 
 void ClaimFinder::add_waterway(const Thing& thing, std::vector<Entry>& out) const {
   const TagOf tag = tags_of(thing.feature);
-  const std::string_view kind = tag(key::kWaterway);
-  const double usual = kind == "river"                      ? kRiverWidth
-                       : kind == "canal"                    ? kCanalWidth
-                       : kind == "stream"                   ? kStreamWidth
-                       : kind == "ditch" || kind == "drain" ? kDitchWidth
-                                                            : 0;
+  const std::string_view kind = tag(osm_key::kWaterway);
+  const double usual = usual_width(kind);
   if (usual == 0) return;
-  const std::optional<double> tagged = length_of(tag(key::kWidth));
+  const std::optional<double> tagged = length_of(tag(osm_key::kWidth));
   const double half = (tagged && *tagged > 0.2 && *tagged < 500 ? *tagged : usual) / 2;
   for (const std::vector<Point2>& line : lines_of(thing)) {
     if (line.size() < 2) continue;
@@ -341,14 +453,17 @@ void ClaimFinder::add_area(const Thing& thing, std::vector<Entry>& out) const {
   if (rule == nullptr) return;
   Entry entry;
   entry.rank = rank_of(rule->ground);
-  const std::string_view surface = tag(key::kSurface);
+  const std::string_view surface = tag(osm_key::kSurface);
   const auto tagged = surface.empty() ? std::nullopt : in_.catalogue.surface(surface);
   entry.label = {.ground = rule->ground,
                  .object = in_.extract.features[thing.feature].id,
                  .material = tagged.value_or(in_.catalogue.material(rule->material)),
                  .trees_per_hectare = static_cast<float>(rule->trees_per_hectare)};
   if (rule->ground == GroundClass::water) entry.label.offset = -kBank;
-  if (rule->ground == GroundClass::carriageway) entry.label.offset = -kKerb;
+  // Of area:highway the value is the class of its street.
+  const std::string_view street = tag(osm_key::kAreaHighway);
+  if (rule->ground == GroundClass::carriageway && in_.catalogue.street(street.empty() ? "residential" : street).kerbed)
+    entry.label.offset = -kKerb;
   if (rule->ground == GroundClass::swimming_pool) entry.label.offset = -0.1f;
   double area = 0;
   for (std::vector<Point2>& ring : lines_of(thing)) {
@@ -428,7 +543,7 @@ GroundClaims ClaimFinder::claims_in(const PlanBox& box) const {
   std::vector<Entry> entries;
   add_passages(box, entries);
   add_buildings(box, entries);
-  for (const std::uint32_t t : boxes_.near(box, kStreetReach)) {
+  for (const std::uint32_t t : boxes_.near(box, 0)) {
     const Thing& thing = things_[t];
     if (thing.hidden) continue;
     const model::Feature& feature = in_.extract.features[thing.feature];
@@ -439,7 +554,7 @@ GroundClaims ClaimFinder::claims_in(const PlanBox& box) const {
         if (feature.area) {
           add_area(thing, entries);
         } else {
-          add_street(thing, entries);
+          add_street(thing, box, entries);
         }
         break;
       case SurroundingKind::railway:
@@ -456,10 +571,13 @@ GroundClaims ClaimFinder::claims_in(const PlanBox& box) const {
           add_waterway(thing, entries);
         }
         break;
+      case SurroundingKind::barrier:
+        // A fence around a garden is often mapped as one with it.
+        if (is_closed(feature)) add_area(thing, entries);
+        break;
       case SurroundingKind::bridge:
       case SurroundingKind::tunnel:
       case SurroundingKind::tree:
-      case SurroundingKind::barrier:
       case SurroundingKind::cliff:
       case SurroundingKind::power:
       case SurroundingKind::wind_turbine:

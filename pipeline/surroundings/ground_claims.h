@@ -9,6 +9,7 @@
 #include "pipeline/context/context_extract.h"
 #include "pipeline/context/vicinity_finder.h"
 #include "pipeline/footprints/footprint_store.h"
+#include "pipeline/geometry/line_area.h"
 #include "pipeline/geometry/plane_partition.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/extract.h"
@@ -55,6 +56,13 @@ struct GroundClaims {
 /// of a wall of a canal at least.
 inline constexpr float kKerb = 0.12f, kBank = 0.5f;
 
+/// m: longer runs of bridges are not put together: what a tile sees of its bridges lies within reach.
+inline constexpr double kMostRun = 2000;
+/// m: runs whose crossings are looked for; longer ones cross something.
+inline constexpr double kLookedThrough = 300;
+/// m from the ends of a bridge within which the ground is that of its approach, not what it crosses.
+inline constexpr double kApproach = 8;
+
 /// m: how far from its line the ground of a street reaches at most, and buildings stand that make a street one of a town.
 inline constexpr double kStreetReach = 40, kBuiltUpReach = 25;
 
@@ -77,6 +85,8 @@ class ClaimFinder {
   std::vector<std::vector<model::Point2>> lines_of(const Thing& thing) const;
   /// The value of a tag of a feature.
   TagOf tags_of(std::uint32_t feature) const;
+  /// A line in pieces of about kJudgedPiece, each of which is one of a town or not.
+  static std::vector<std::vector<model::Point2>> judged_pieces(const std::vector<model::Point2>& line);
   /// Whether houses stand around a line.
   bool is_built_up(std::span<const model::Point2> line) const;
 
@@ -89,12 +99,15 @@ class ClaimFinder {
   /// m: half of the opening of a barrier at one of its nodes: `street` where one of a street is, `gate` where a gate is, else 0.
   double opening_at(std::int64_t node, double street, double gate) const;
 
-  /// The bridges that a bridge goes on in, as long as no third one meets them.
+  /// The bridges that a bridge goes on in, as long as no third one meets them and the run is not longer than kMostRun.
   struct BridgeRun {
     model::Point2 start, end;  ///< of the whole run
     double length = 0;         ///< m of it
     double before = 0;         ///< m of it before this bridge
-    bool reversed = false;     ///< the bridge is mapped against the run
+    double layer = 1;          ///< the highest of its bridges
+    bool crosses_traffic =
+        false;  ///< a street, railway or way lies below, away from its ends; taken for granted of long runs
+    std::vector<model::Point2> line;  ///< m, all of it
   };
   BridgeRun bridge_run(const Thing& thing) const;
 
@@ -103,7 +116,12 @@ class ClaimFinder {
 
  private:
   struct Entry;
-  void add_street(const Thing& thing, std::vector<Entry>& out) const;
+  void add_street(const Thing& thing, const geometry::PlanBox& box, std::vector<Entry>& out) const;
+  void add_street_piece(model::OsmId id, const TagOf& tag, const std::vector<model::Point2>& line,
+                        geometry::LineEnd start, geometry::LineEnd end, std::vector<Entry>& out) const;
+  bool crosses_traffic(const BridgeRun& run) const;
+  /// An area, or a line that ends where it begins.
+  bool is_closed(const model::Feature& feature) const;
   void add_railway(const Thing& thing, std::vector<Entry>& out) const;
   void add_waterway(const Thing& thing, std::vector<Entry>& out) const;
   void add_area(const Thing& thing, std::vector<Entry>& out) const;

@@ -69,8 +69,11 @@ std::vector<SquareSurface> ground_surfaces(SquareIndex square, const SquareGroun
     surface.faces.push_back(std::move(face));
     std::size_t e = 0;
     const auto steps = [&](const model::Ring& ring) {
-      for (std::size_t i = 0; i < ring.size(); ++i, ++e)
-        lifted.add_step(ring.points[i], ring.points[(i + 1) % ring.size()], label_of(piece.beyond[e]), surface.edges);
+      for (std::size_t i = 0; i < ring.size(); ++i, ++e) {
+        const Point2 a = ring.points[i], b = ring.points[(i + 1) % ring.size()];
+        lifted.add_step(a, b, label_of(piece.beyond[e]), surface.edges);
+        if (piece.beyond[e] != piece.label) to.borders.push_back({a, b});
+      }
     };
     steps(piece.polygon.outer);
     for (const model::Ring& hole : piece.polygon.holes) steps(hole);
@@ -98,18 +101,13 @@ bool holds(const model::Polygon& polygon, Point2 place) {
   return inside;
 }
 
-double distance_to_border(const model::Polygon& polygon, Point2 place) {
+double distance_to(std::span<const std::array<Point2, 2>> edges, Point2 place) {
   double least = std::numeric_limits<double>::infinity();
-  const auto follow = [&](const model::Ring& ring) {
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const Point2 a = ring.points[i], b = ring.points[(i + 1) % ring.size()];
-      const double dx = b.x - a.x, dy = b.y - a.y, length = dx * dx + dy * dy;
-      const double t = length > 0 ? std::clamp(((place.x - a.x) * dx + (place.y - a.y) * dy) / length, 0.0, 1.0) : 0.0;
-      least = std::min(least, std::hypot(place.x - a.x - t * dx, place.y - a.y - t * dy));
-    }
-  };
-  follow(polygon.outer);
-  for (const model::Ring& hole : polygon.holes) follow(hole);
+  for (const auto& [a, b] : edges) {
+    const double dx = b.x - a.x, dy = b.y - a.y, length = dx * dx + dy * dy;
+    const double t = length > 0 ? std::clamp(((place.x - a.x) * dx + (place.y - a.y) * dy) / length, 0.0, 1.0) : 0.0;
+    least = std::min(least, std::hypot(place.x - a.x - t * dx, place.y - a.y - t * dy));
+  }
   return least;
 }
 

@@ -1,6 +1,8 @@
 // The ground of one square as surfaces with heights.
 #pragma once
 
+#include <array>
+#include <span>
 #include <vector>
 
 #include "pipeline/model/surroundings.h"
@@ -13,6 +15,7 @@ namespace blockrand::surroundings {
 struct SquareSurface {
   std::uint32_t label = 0;  ///< into GroundClaims::labels
   std::vector<model::Polygon> plan;
+  std::vector<std::array<model::Point2, 2>> borders;  ///< edges of `plan` beyond which lies another label
   model::GroundSurface surface;
 };
 
@@ -27,7 +30,7 @@ std::vector<SquareSurface> ground_surfaces(SquareIndex square, const SquareGroun
 
 /// Whether a polygon holds a place; its border counts as outside.
 bool holds(const model::Polygon& polygon, model::Point2 place);
-/// m from a place to the border of a polygon.
-double distance_to_border(const model::Polygon& polygon, model::Point2 place);
+/// m from a place to the nearest of some edges; infinite without any.
+double distance_to(std::span<const std::array<model::Point2, 2>> edges, model::Point2 place);
 
 }  // namespace blockrand::surroundings

@@ -58,7 +58,10 @@ std::optional<SurroundingKind> kind_of(const model::Feature& feature, const TagO
 /// Below ground or inside: tunnels, culverts, layers below 0 that are no bridges, indoor ways.
 std::optional<model::SurroundingState> hidden_state(const model::Feature& feature, const TagOf& tag);
 
-/// bridge=* but not `no`; not a covered footbridge of the mapped building.
+/// Whether a value of `railway` is a track with two rails.
+bool is_track(std::string_view railway);
+
+/// bridge=* but not `no`.
 bool is_bridge(const TagOf& tag);
 
 }  // namespace blockrand::surroundings

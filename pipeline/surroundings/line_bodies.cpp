@@ -18,21 +18,25 @@ using model::FlatPolygon;
 using model::Point2;
 using model::Point3;
 using model::SurroundingBody;
-namespace key = model::osm_key;
+namespace osm_key = model::osm_key;
 
-/// m. Longer pieces are cut where the ground is uneven, so that a body follows it.
-constexpr double kFollowStep = 5;
+/// m: how uneven the ground below a piece may be; else it is cut into pieces of a metre.
+constexpr double kUneven = 0.2;
+/// m: pieces of decks, which bend where they reach their height.
+constexpr double kDeckStep = 10;
 // Markings, m [RMS, FGSV 1993: narrow lines 0.12, within towns dashes of 3 with gaps of 6; crossings of stripes of 0.50, 3 to 4 long].
 constexpr double kLine = 0.12, kDash = 3, kDashPeriod = 9, kStripe = 0.5, kZebraLength = 3.5, kPaint = 0.012;
+/// m. A longer straight line is no street.
+constexpr double kMostMarked = 20000;
 constexpr double kJunctionFree = 12, kCrossingFree = 5;
+/// Of one segment: no bridge is longer.
+constexpr double kMostDeckPieces = 5000;
 /// m: how deep bodies reach into the ground, so that no gap shows on a slope.
 constexpr double kSunk = 0.3;
 // Bridges. m: clearance above streets and railways [RASt 06: 4.50], above water and green [E], thickness of a deck, height of railings
 // [RAS-Q: 1.0 to 1.3]; slopes at most.
 constexpr double kClearance = 4.5, kLowClearance = 0.6, kDeck = 0.6, kRailing = 1.1, kRailingWidth = 0.08;
 constexpr double kMostSlope = 0.06, kMostRailSlope = 0.025;
-/// m from the ends of a bridge within which the ground is that of its approach, not what it crosses.
-constexpr double kApproach = 8;
 // m: half of the opening where a street or a gate is a point of a barrier.
 constexpr double kStreetOpening = 1.75, kGateOpening = 0.6;
 
@@ -49,17 +53,18 @@ class OffsetLine {
   double along(std::size_t i) const { return along_[i]; }
   double length() const { return along_.back(); }
 
-  /// The point `right` metres to the right of point i, on the bisector of the bend there.
-  Point2 beside(std::size_t i, double right) const {
+  /// The point `right` metres to the right of point i, on the bisector of the bend there; at a bend that is too sharp for one,
+  /// square to a segment, which begins or ends there. Lines that repeat their first point bend there, too.
+  Point2 beside(std::size_t i, double right, std::size_t segment) const {
     const bool closed = points_.front() == points_.back() && points_.size() > 3;
     const std::size_t last = points_.size() - 1;
     const Point2 before = normal(i > 0 ? i - 1 : closed ? last - 1 : 0);
     const Point2 after = normal(i < last ? i : closed ? 0 : last - 1);
     double x = before.x + after.x, y = before.y + after.y;
     const double square = x * x + y * y;
-    // 2 / |n1 + n2|² along n1 + n2 is the mitre; sharp bends are cut at twice the width.
-    const double scale = square > 1 ? 2 / square : 1;
-    if (square <= 1) x = before.x, y = before.y;
+    // 2 / |n1 + n2|² along n1 + n2 is the mitre.
+    double scale = square > 1 ? 2 / square : 1;
+    if (square <= 1) x = normal(segment).x, y = normal(segment).y;
     return model::snap(Point2{points_[i].x + right * scale * x, points_[i].y + right * scale * y});
   }
 
@@ -79,8 +84,9 @@ class OffsetLine {
 void add_strip(const OffsetLine& line, double left, double right,
                const std::function<std::pair<double, double>(std::size_t)>& heights,
                const std::function<bool(std::size_t)>& takes, bool underside, std::vector<FlatPolygon>& out) {
+  std::size_t segment = 0;
   const auto point = [&](std::size_t i, double side, bool top) {
-    const Point2 p = line.beside(i, side);
+    const Point2 p = line.beside(i, side, segment);
     const auto [low, high] = heights(i);
     return Point3{p.x, p.y, model::snap(top ? high : low)};
   };
@@ -91,6 +97,7 @@ void add_strip(const OffsetLine& line, double left, double right,
   };
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
     if (!takes(i)) continue;
+    segment = i;
     const Point3 l0 = point(i, left, true), r0 = point(i, right, true), l1 = point(i + 1, left, true),
                  r1 = point(i + 1, right, true);
     const Point3 l0_low = point(i, left, false), r0_low = point(i, right, false), l1_low = point(i + 1, left, false),
@@ -106,26 +113,46 @@ void add_strip(const OffsetLine& line, double left, double right,
   }
 }
 
-/// The line with more points where the ground below a segment is uneven.
-std::vector<Point2> following(const std::vector<Point2>& line, const GroundAtPlace& ground) {
+/// The part of a line around a box, in pieces of at most kLongest, and of a metre where the ground below is uneven or a
+/// building stands on it. Its far segments stay as they are: nobody takes them.
+std::vector<Point2> following(const std::vector<Point2>& line, const GroundAtPlace& ground,
+                              const geometry::PlanBox& around) {
   std::vector<Point2> out;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
     out.push_back(line[i]);
     const Point2 a = line[i], b = line[i + 1];
     const double length = std::hypot(b.x - a.x, b.y - a.y);
-    const auto pieces = static_cast<int>(std::ceil(length / kFollowStep));
-    if (pieces < 2) continue;
-    const double low = ground(a).height;
-    bool level = true;
-    for (int k = 1; k <= pieces && level; ++k) {
-      const double f = static_cast<double>(k) / pieces;
-      level = std::fabs(ground({a.x + f * (b.x - a.x), a.y + f * (b.y - a.y)}).height - low) < 0.2;
+    const auto at = [&](double s) { return Point2{a.x + s / length * (b.x - a.x), a.y + s / length * (b.y - a.y)}; };
+    // The stretch of the segment whose places may be taken.
+    geometry::PlanBox own;
+    own.include(a), own.include(b);
+    if (!own.near(around, 0) || !(length > 0)) continue;
+    double from = 0, to = length;
+    const auto cut = [&](double p, double d, double low, double high) {
+      if (d == 0) return;
+      const double s = (low - p) / d * length, t = (high - p) / d * length;
+      from = std::max(from, std::min(s, t)), to = std::min(to, std::max(s, t));
+    };
+    cut(a.x, b.x - a.x, around.minimum.x, around.maximum.x);
+    cut(a.y, b.y - a.y, around.minimum.y, around.maximum.y);
+    if (from > to) continue;
+    // Pieces are counted from the start of the segment: every tile finds the same ones.
+    const double parts = std::ceil(length / kLongest), step = length / parts;
+    const double first = std::max(0.0, std::floor(from / step)), last = std::min(parts, std::ceil(to / step));
+    for (double part = first; part < last; ++part) {
+      const double begin = part * step, end = std::min(length, begin + step);
+      if (part > 0) out.push_back(model::snap(at(begin)));
+      const GroundAt here = ground(at(begin));
+      bool even = true;
+      for (double s = begin; s <= end && even; s += 1) {
+        const GroundAt there = ground(at(s));
+        even = there.building == here.building && std::fabs(there.height - here.height) < kUneven;
+      }
+      if (even) continue;
+      const double pieces = std::ceil(end - begin);
+      for (double k = 1; k < pieces; ++k) out.push_back(model::snap(at(begin + (end - begin) * k / pieces)));
     }
-    if (level) continue;
-    for (int k = 1; k < pieces; ++k) {
-      const double f = static_cast<double>(k) / pieces;
-      out.push_back(model::snap(Point2{a.x + f * (b.x - a.x), a.y + f * (b.y - a.y)}));
-    }
+    if (last < parts) out.push_back(model::snap(at(last * step)));
   }
   if (!line.empty()) out.push_back(line.back());
   out.erase(std::unique(out.begin(), out.end()), out.end());
@@ -155,7 +182,7 @@ constexpr std::array<BarrierKind, 12> kBarriers{{{"wall", BodyClass::wall, 1.5, 
                                                  {"gate", BodyClass::fence, 1.3, 0.06, "metal"}}};
 
 std::string_view material_of(const TagOf& tag, std::string_view usual) {
-  const std::string_view told = tag(key::kMaterial), fence = tag(key::kFenceType);
+  const std::string_view told = tag(osm_key::kMaterial), fence = tag(osm_key::kFenceType);
   if (told == "wood" || fence == "wood" || fence == "pole" || fence == "split_rail") return "wood";
   if (told == "concrete") return "concrete";
   if (told == "brick") return "brick";
@@ -228,12 +255,15 @@ std::vector<std::vector<Point2>> without_openings(const std::vector<Point2>& lin
 class Bodies {
  public:
   Bodies(const SurroundingInputs& in, const ClaimFinder& claims, const Thing& thing,
-         const std::function<bool(Point2)>& is_own, const GroundAtPlace& ground)
+         const std::function<bool(Point2)>& is_own, const geometry::PlanBox& around, const GroundAtPlace& ground,
+         const std::function<double(Point2)>& run_height)
       : in_(in),
         claims_(claims),
         thing_(thing),
         is_own_(is_own),
+        around_(around),
         ground_(ground),
+        run_height_(run_height),
         tag_(claims.tags_of(thing.feature)),
         feature_(in.extract.features[thing.feature]) {}
 
@@ -244,7 +274,7 @@ class Bodies {
         break;
       case SurroundingKind::railway:
         if (!feature_.area)
-          for (const auto& line : claims_.lines_of(thing_)) rails(OffsetLine(following(line, ground_)), {});
+          for (const auto& line : claims_.lines_of(thing_)) rails(OffsetLine(following(line, ground_, around_)), {});
         break;
       case SurroundingKind::bridge:
         if (!feature_.area) bridge();
@@ -291,14 +321,14 @@ class Bodies {
   }
 
   void barrier() {
-    const std::string_view value = tag_(key::kBarrier);
+    const std::string_view value = tag_(osm_key::kBarrier);
     const auto kind = std::ranges::find(kBarriers, value, &BarrierKind::value);
     if (kind == kBarriers.end() || kind->height == 0) return;
     const auto tagged = [&](std::string_view k, double usual, double most) {
       const std::optional<double> told = length_of(tag_(k));
       return told && *told > 0.02 && *told <= most ? *told : usual;
     };
-    const double height = tagged(key::kHeight, kind->height, 30), width = tagged(key::kWidth, kind->width, 5);
+    const double height = tagged(osm_key::kHeight, kind->height, 30), width = tagged(osm_key::kWidth, kind->width, 5);
     std::vector<FlatPolygon>& faces = body(kind->body, material_of(tag_, kind->material)).faces;
     const auto rings = in_.extract.rings_of(feature_.rings);
     const auto lines = claims_.lines_of(thing_);
@@ -312,7 +342,7 @@ class Bodies {
         for (std::size_t i = 0; i < nodes.size(); ++i)
           openings[i] = claims_.opening_at(nodes[i], kStreetOpening, kGateOpening);
       for (const std::vector<Point2>& run : without_openings(mapped, openings)) {
-        const OffsetLine line(following(run, ground_));
+        const OffsetLine line(following(run, ground_, around_));
         if (line.size() < 2) continue;
         const auto takes = [&](std::size_t i) {
           if (!is_own(line, i)) return false;
@@ -340,13 +370,11 @@ class Bodies {
   /// \param deck  heights of a bridge, by point of the line; empty: those of the ground
   void rails(const OffsetLine& line, const std::vector<double>& deck) {
     if (line.size() < 2) return;
-    const std::string_view kind = tag_(key::kRailway);
+    const std::string_view kind = tag_(osm_key::kRailway);
     const bool tram = kind == "tram";
-    if (kind != "rail" && kind != "light_rail" && kind != "narrow_gauge" && kind != "subway" && kind != "funicular" &&
-        kind != "preserved" && !tram)
-      return;
+    if (!is_track(kind)) return;
     double gauge = 1.435;
-    if (const std::optional<double> told = length_of(tag_(key::kGauge)); told && *told >= 300 && *told <= 2000)
+    if (const std::optional<double> told = length_of(tag_(osm_key::kGauge)); told && *told >= 300 && *told <= 2000)
       gauge = *told / 1000;
     // Rails of trams lie in the pavement; others stand 15 to 17 cm high (UIC 54: 159 mm).
     const double top = tram ? 0.015 : 0.16, half = 0.035;
@@ -384,14 +412,14 @@ class Bodies {
   void markings() {
     const std::optional<StreetProfile> profile = street_profile(tag_, true, in_.catalogue);
     if (!profile || profile->carriageway_right - profile->carriageway_left < 4) return;
-    const std::string_view highway = tag_(key::kHighway);
+    const std::string_view highway = tag_(osm_key::kHighway);
     constexpr std::array<std::string_view, 10> kMarked{"motorway",       "trunk",         "primary",    "secondary",
                                                        "tertiary",       "motorway_link", "trunk_link", "primary_link",
                                                        "secondary_link", "tertiary_link"};
     const double left = profile->carriageway_left, right = profile->carriageway_right;
     int lanes = profile->lanes;
     const bool main_street = std::ranges::find(kMarked, highway) != kMarked.end();
-    const std::string_view oneway = tag_(key::kOneway);
+    const std::string_view oneway = tag_(osm_key::kOneway);
     if (lanes == 0 && main_street && (oneway.empty() || oneway == "no") && right - left >= 5.5) lanes = 2;
     if (!main_street && (lanes < 2 || right - left < 2.75 * lanes)) lanes = 0;
     std::vector<FlatPolygon>& faces = body(BodyClass::marking, "marking_white").faces;
@@ -433,7 +461,9 @@ class Bodies {
         const double side = left + (right - left) * lane / lanes;
         for (std::size_t i = 0; i + 1 < line.size(); ++i) {
           const double from = offset.along(i), to = offset.along(i + 1), length = to - from;
-          if (!(length > 0)) continue;
+          geometry::PlanBox own_box;
+          own_box.include(line[i]), own_box.include(line[i + 1]);
+          if (!(length > 0) || length > kMostMarked || !own_box.near(around_, 0)) continue;
           const Point2 d{(line[i + 1].x - line[i].x) / length, (line[i + 1].y - line[i].y) / length};
           // Dashes lie where they lie along the whole line, whatever its points.
           for (double s = std::floor(from / kDashPeriod) * kDashPeriod + kDash / 2; s < to; s += kDashPeriod) {
@@ -458,8 +488,8 @@ class Bodies {
       std::vector<Point2> points;
       for (std::size_t i = 0; i + 1 < mapped.size(); ++i) {
         const Point2 a = mapped[i], b = mapped[i + 1];
-        const int pieces =
-            std::max(1, static_cast<int>(std::ceil(std::hypot(b.x - a.x, b.y - a.y) / (2 * kFollowStep))));
+        const int pieces = std::max(
+            1, static_cast<int>(std::min(kMostDeckPieces, std::ceil(std::hypot(b.x - a.x, b.y - a.y) / kDeckStep))));
         for (int k = 0; k < pieces; ++k) {
           const double f = static_cast<double>(k) / pieces;
           points.push_back(model::snap(Point2{a.x + f * (b.x - a.x), a.y + f * (b.y - a.y)}));
@@ -469,26 +499,17 @@ class Bodies {
       points.erase(std::unique(points.begin(), points.end()), points.end());
       const OffsetLine line(points);
       if (line.size() < 2) continue;
-      const double first = ground_(run.start).height, last = ground_(run.end).height;
-      const bool rail = !tag_(key::kRailway).empty();
+      const double first = run_height_(run.start), last = run_height_(run.end);
+      const bool rail = !tag_(osm_key::kRailway).empty();
       double lowest = std::min(first, last);
-      bool crosses_traffic = false;
-      for (std::size_t i = 0; i < line.size(); ++i) {
-        const GroundAt at = ground_(points[i]);
-        lowest = std::min(lowest, at.height);
-        const double s = run.before + (run.reversed ? line.length() - line.along(i) : line.along(i));
-        using enum model::GroundClass;
-        const bool traffic = at.ground == carriageway || at.ground == parking_lane || at.ground == rail_bed ||
-                             at.ground == cycle_way || at.ground == footway;
-        crosses_traffic = crosses_traffic || (traffic && s > kApproach && s < run.length - kApproach);
-      }
-      const std::optional<double> layer = length_of(tag_(key::kLayer));
-      const double asked = crosses_traffic ? kClearance * std::clamp(layer.value_or(1), 1.0, 4.0) : kLowClearance;
+      if (run.length <= kLookedThrough)
+        for (const Point2 p : run.line) lowest = std::min(lowest, run_height_(p));
+      const double asked = run.crosses_traffic ? kClearance * std::clamp(run.layer, 1.0, 4.0) : kLowClearance;
       const double clearance = std::max(0.0, asked - (std::min(first, last) - lowest));
       const double slope = rail ? kMostRailSlope : kMostSlope;
       std::vector<double> deck;
       for (std::size_t i = 0; i < line.size(); ++i) {
-        const double s = run.before + (run.reversed ? line.length() - line.along(i) : line.along(i));
+        const double s = run.before + line.along(i);
         const double t = run.length > 0 ? s / run.length : 0;
         const double rise = std::min({clearance, slope * s, slope * std::max(0.0, run.length - s)});
         deck.push_back(first + t * (last - first) + rise);
@@ -516,7 +537,8 @@ class Bodies {
           takes, true, structure);
       for (const double side : {left - 0.2, right + 0.2}) {
         std::vector<Point2> beside;
-        for (std::size_t i = 0; i < line.size(); ++i) beside.push_back(line.beside(i, side));
+        for (std::size_t i = 0; i < line.size(); ++i)
+          beside.push_back(line.beside(i, side, std::min(i, line.size() - 2)));
         beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
         if (beside.size() != line.size()) continue;  // a bend that is tighter than the deck is wide
         add_fence(
@@ -531,7 +553,9 @@ class Bodies {
   const ClaimFinder& claims_;
   const Thing& thing_;
   const std::function<bool(Point2)>& is_own_;
+  const geometry::PlanBox& around_;
   const GroundAtPlace& ground_;
+  const std::function<double(Point2)>& run_height_;
   TagOf tag_;
   const model::Feature& feature_;
   std::vector<SurroundingBody> out_;
@@ -540,8 +564,10 @@ class Bodies {
 }  // namespace
 
 std::vector<SurroundingBody> line_bodies(const SurroundingInputs& in, const ClaimFinder& claims, const Thing& thing,
-                                         const std::function<bool(Point2)>& is_own, const GroundAtPlace& ground) {
-  return Bodies(in, claims, thing, is_own, ground).make();
+                                         const std::function<bool(Point2)>& is_own, const geometry::PlanBox& around,
+                                         const GroundAtPlace& ground,
+                                         const std::function<double(Point2)>& terrain_height) {
+  return Bodies(in, claims, thing, is_own, around, ground, terrain_height).make();
 }
 
 }  // namespace blockrand::surroundings

@@ -9,6 +9,9 @@
 
 namespace blockrand::surroundings {
 
+/// m. Pieces of bodies are no longer: whether they are cut depends on the ground this far around.
+inline constexpr double kLongest = 60;
+
 /// The ground at a place in plan.
 struct GroundAt {
   bool building = false;
@@ -26,8 +29,11 @@ using GroundAtPlace = std::function<GroundAt(model::Point2)>;
 /// * bridge=* of streets and railways: a deck between the grounds at both ends of the run of bridges that it belongs to, raised as
 ///   far as its layer, what it crosses and a slope of 6 % (railways: 2.5 %) allow where the ground below is not low already; with its
 ///   strips, and railings.
+/// \param around  m, all places that `is_own` takes
+/// \param terrain_height  m, of the ground wherever a run of bridges leads
 std::vector<model::SurroundingBody> line_bodies(const SurroundingInputs& in, const ClaimFinder& claims,
                                                 const Thing& thing, const std::function<bool(model::Point2)>& is_own,
-                                                const GroundAtPlace& ground);
+                                                const geometry::PlanBox& around, const GroundAtPlace& ground,
+                                                const std::function<double(model::Point2)>& terrain_height);
 
 }  // namespace blockrand::surroundings

@@ -12,6 +12,8 @@ namespace {
 
 using model::Point2;
 
+/// m. A longer row is a slip of the mouse.
+constexpr double kLongestRow = 50000;
 /// m: nearer to a mapped tree none is scattered.
 constexpr double kCrown = 5;
 
@@ -45,7 +47,7 @@ std::vector<PlannedObject> row_of_trees(const Catalogue& catalogue, model::OsmId
   double length = 0;
   for (std::size_t i = 1; i < line.size(); ++i)
     length += std::hypot(line[i].x - line[i - 1].x, line[i].y - line[i - 1].y);
-  if (!(length > 0)) return out;
+  if (!(length > 0) || length > kLongestRow) return out;
   const auto gaps = static_cast<std::size_t>(std::max(1.0, std::round(length / kRowSpacing)));
   double before = 0;
   std::size_t segment = 1;
@@ -96,7 +98,7 @@ std::vector<PlannedObject> scattered_trees(const Catalogue& catalogue, std::span
           };
           const Point2 place{(static_cast<double>(x) + 0.15 + 0.7 * random("east")) * spacing,
                              (static_cast<double>(y) + 0.15 + 0.7 * random("north")) * spacing};
-          if (!holds(polygon, place) || distance_to_border(polygon, place) < kBorderDistance) continue;
+          if (!holds(polygon, place) || distance_to(surface.borders, place) < kBorderDistance) continue;
           if (std::ranges::any_of(mapped, [&](Point2 m) { return std::hypot(m.x - place.x, m.y - place.y) < kCrown; }))
             continue;
           out.push_back(planned(choose_shape(catalogue, "tree", tag, random), label.object, place, random("turn")));

@@ -18,12 +18,84 @@ using geometry::PlanBox;
 using model::Point2;
 using model::SurroundingState;
 
+/// m. A longer straight line is no thing of a town.
+constexpr double kMostLooked = 100000;
+
 /// The middle of the box of a thing's corners.
 Point2 middle_of(const std::vector<std::vector<Point2>>& lines) {
   PlanBox box;
   for (const auto& line : lines)
     for (const Point2 p : line) box.include(p);
   return box.empty() ? Point2{} : model::snap(box.centre());
+}
+
+/// Whether a layer is asked for that a thing of a kind is in: of others nothing is told.
+bool is_asked(SurroundingKind kind, const SurroundingOptions& layers) {
+  using enum SurroundingKind;
+  switch (kind) {
+    case road:
+    case railway:
+      return layers.ground || layers.bodies;
+    case aeroway:
+    case parking:
+    case water:
+    case pool:
+    case golf:
+    case pitch:
+    case surface_area:
+      return layers.ground;
+    case bicycle_parking:
+      return layers.ground || layers.objects;
+    case barrier:
+      return layers.bodies || layers.objects;
+    case bridge:
+    case cliff:
+      return layers.bodies;
+    case power:
+    case wind_turbine:
+    case mast:
+    case tree:
+    case street_furniture:
+    case traffic_sign:
+      return layers.objects;
+    case aerialway:
+    case tunnel:
+    case other:
+      return true;
+  }
+  return true;
+}
+
+/// Whether a thing comes into squares: one of its points, or of points every few metres between them; an area also where it only
+/// covers them.
+bool comes_to(const std::vector<std::vector<Point2>>& lines, bool area, const PlanBox& box,
+              const std::set<SquareIndex>& squares) {
+  constexpr double kStep = 50;
+  for (const std::vector<Point2>& line : lines)
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      if (squares.contains(square_of(line[i]))) return true;
+      if (i + 1 == line.size()) continue;
+      PlanBox segment;
+      segment.include(line[i]), segment.include(line[i + 1]);
+      if (!segment.near(box, 0)) continue;
+      const double length = std::hypot(line[i + 1].x - line[i].x, line[i + 1].y - line[i].y);
+      if (length > kMostLooked) continue;
+      for (double s = kStep; s < length; s += kStep)
+        if (squares.contains(square_of({line[i].x + s / length * (line[i + 1].x - line[i].x),
+                                        line[i].y + s / length * (line[i + 1].y - line[i].y)})))
+          return true;
+    }
+  if (!area) return false;
+  geometry::AreaClaim claim;
+  claim.rings = lines;
+  return geometry::claim_holds(claim, box_of(*squares.begin()).centre());
+}
+
+PlanBox with_margin(const PlanBox& box) {
+  PlanBox out;
+  out.minimum = {box.minimum.x - kLongest, box.minimum.y - kLongest};
+  out.maximum = {box.maximum.x + kLongest, box.maximum.y + kLongest};
+  return out;
 }
 
 /// Where a mapped thing stands that the carriageway, as wide as it is assumed to be, has swallowed: at the nearest kerb, if that is near.
@@ -93,7 +165,7 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
   const std::set<SquareIndex> own(squares.begin(), squares.end());
   const auto is_own = [&](Point2 p) { return own.contains(square_of(p)); };
 
-  const GroundClaims claims = claims_.claims_in(box);
+  const GroundClaims claims = claims_.claims_in(with_margin(box));
   const geometry::BoxIndex claim_boxes([&] {
     std::vector<PlanBox> boxes;
     for (const geometry::AreaClaim& claim : claims.claims) {
@@ -120,15 +192,11 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
     const model::Feature& feature = in_.extract.features[thing.feature];
     thing_of[feature.id] = t;
     const std::vector<std::vector<Point2>> lines = claims_.lines_of(thing);
-    const bool comes_here =
-        std::ranges::any_of(lines, [&](const auto& line) { return std::ranges::any_of(line, is_own); });
-    if (!comes_here) continue;
-    kinds[feature.id] = thing.kind;
-    if (thing.hidden) {
-      states[feature.id] = *thing.hidden;
-      continue;
+    if (is_asked(thing.kind, layers_) && comes_to(lines, feature.area, box, own)) {
+      kinds[feature.id] = thing.kind;
+      states[feature.id] = thing.hidden.value_or(SurroundingState::not_modelled);
     }
-    states[feature.id] = SurroundingState::not_modelled;
+    if (thing.hidden) continue;
     const TagOf tag = claims_.tags_of(thing.feature);
     if (!layers_.objects) continue;
     const bool point = !feature.area && lines.size() == 1 && lines[0].size() == 1;
@@ -171,7 +239,7 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
     const auto is_mapped = [&](const SquareSurface& s) { return s.label < claims.labels.size(); };
     if (std::ranges::none_of(surfaces, is_mapped)) continue;
     for (const SquareSurface& s : surfaces)
-      if (is_mapped(s)) with_ground.insert(claims.labels[s.label].object);
+      if (is_mapped(s) && layers_.ground) with_ground.insert(claims.labels[s.label].object);
     if (layers_.objects)
       for (PlannedObject& tree : scattered_trees(in_.catalogue, surfaces, claims, mapped_trees, tags_of_object, seed_))
         planned.push_back(std::move(tree));
@@ -200,9 +268,13 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
     }
     return found;
   };
+  // Of the squares of a run's ends alone: a run leads far beyond the tile.
+  const std::function<double(Point2)> run_height = [&](Point2 p) { return height_at(p); };
   for (PlannedObject& object : planned) {
     if (!is_own(object.place)) continue;
-    SurroundingState& state = states[object.object.object];
+    if (const auto thing = thing_of.find(object.object.object); thing != thing_of.end())
+      kinds[object.object.object] = claims_.things()[thing->second].kind;
+    SurroundingState& state = states.try_emplace(object.object.object, SurroundingState::not_modelled).first->second;
     object.place = beside_traffic(object.place, in_.catalogue.shown().shapes[object.object.shape].kind, ground_at);
     const GroundAt ground = ground_at(object.place);
     if (ground.building) {
@@ -218,7 +290,7 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
       const Thing& thing = claims_.things()[t];
       if (thing.hidden) continue;
       const model::OsmId id = in_.extract.features[thing.feature].id;
-      std::vector<model::SurroundingBody> bodies = line_bodies(in_, claims_, thing, is_own, ground_at);
+      std::vector<model::SurroundingBody> bodies = line_bodies(in_, claims_, thing, is_own, box, ground_at, run_height);
       if (!bodies.empty()) states[id] = SurroundingState::modelled, kinds[id] = thing.kind;
       for (model::SurroundingBody& body : bodies) out.bodies.push_back(std::move(body));
     }
@@ -230,7 +302,10 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
       if (const auto coast = states.find(in_.extract.features[claims_.things()[t].feature].id); coast != states.end())
         coast->second = SurroundingState::modelled;
   for (const model::OsmId id : with_ground)
-    if (const auto state = states.find(id); state != states.end()) state->second = SurroundingState::modelled;
+    if (const auto thing = thing_of.find(id); thing != thing_of.end()) {
+      states[id] = SurroundingState::modelled;
+      kinds[id] = claims_.things()[thing->second].kind;
+    }
   for (const auto& [id, state] : states) {
     const auto kind = kinds.find(id);
     if (kind == kinds.end()) continue;
@@ -257,7 +332,16 @@ void SurroundingsFinder::pack(model::TileId tile, base::Packer& out) const {
     for (const model::MappedRing& ring : e.rings_of(feature.rings))
       for (const model::Location at : e.vertices_of(ring)) out << at.lon << at.lat;
   }
-  const GroundClaims claims = claims_.claims_in(box);
+  // Bridges look along their runs, and at the ground at its ends.
+  for (const std::uint32_t t : claims_.things_near(box, 0)) {
+    const Thing& thing = claims_.things()[t];
+    const model::Feature& feature = e.features[thing.feature];
+    if (thing.kind != SurroundingKind::bridge || feature.area || thing.hidden || feature.rings.count != 1) continue;
+    const ClaimFinder::BridgeRun run = claims_.bridge_run(thing);
+    out << run.length << run.before << run.layer << run.crosses_traffic;
+    for (const Point2 p : run.line) out << p.x << p.y;
+  }
+  const GroundClaims claims = claims_.claims_in(with_margin(box));
   for (const geometry::AreaClaim& claim : claims.claims) {
     const GroundLabel& label = claims.labels[claim.label];
     out << label.building << label.ground << label.object << label.offset;

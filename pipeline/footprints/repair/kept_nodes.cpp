@@ -50,7 +50,9 @@ KeptNodes::KeptNodes(const Extract& extract) {
   }
   used.resize(kept);
   for (const model::Feature& feature : extract.features)
-    if (!feature.area) append(extract, feature.rings, used);
+    // What only the surroundings are made of changes no house.
+    if (!feature.area && feature.kinds != static_cast<std::uint32_t>(model::FeatureKind::surrounding))
+      append(extract, feature.rings, used);
   used.shrink_to_fit();
   *this = KeptNodes(std::move(used));
   nodes_.shrink_to_fit();

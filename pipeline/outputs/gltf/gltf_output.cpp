@@ -89,8 +89,8 @@ void write_coarser_level(const Glb& glb, const std::string& place, TileEntry& en
 }
 
 /// Writes the surroundings of a tile beside its buildings, in their frame.
-void write_surroundings(const FinishedTile& tile, const std::string& place, const GlbOptions& options, bool alone,
-                        TileEntry& entry, const OutputContext& context, std::vector<base::PublishedFile>& files) {
+void write_surroundings_tile(const FinishedTile& tile, const std::string& place, const GlbOptions& options, bool alone,
+                             TileEntry& entry, const OutputContext& context, std::vector<base::PublishedFile>& files) {
   if (tile.surroundings == nullptr || context.surroundings == nullptr || tile.surroundings->empty()) return;
   const Glb glb = write_surroundings_glb(*tile.surroundings, *context.surroundings, options);
   if (glb.triangles == 0) return;
@@ -255,7 +255,7 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
   }
   entry.enu_to_ecef = options.frame.enu_to_ecef;
   if (!empty) write_coarser_level(roofs, place, entry, context, tile.files);
-  write_surroundings(tile, place, options, empty, entry, context, tile.files);
+  write_surroundings_tile(tile, place, options, empty, entry, context, tile.files);
   if (empty && !entry.surroundings) return std::nullopt;
   set_bounds(entry, frame.frame());
   return entry;

@@ -35,7 +35,7 @@ TEST(DeclaredOptions, EveryMemberOfABuildIsOne) {
       stages.insert(option.section.name);
   }
   const std::size_t of_outputs = outputs::output_options().size();
-  const std::size_t set_by_the_build = 2;  // whether there are images, and pictures of them
+  const std::size_t set_by_the_build = 3;  // whether there are images, pictures of them, surroundings
   EXPECT_EQ(of_outputs + set_by_the_build, member_count<outputs::OutputOptions>());
   const std::size_t of_a_region = 3;    // its earlier build, the settings that had, what changed since
   const std::size_t of_the_caller = 3;  // whether it only looks ahead, only counts; what people call the input

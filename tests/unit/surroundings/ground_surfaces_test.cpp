@@ -122,7 +122,7 @@ TEST(GroundSurfaces, OverTerrainFacesAreFlatAndNeighboursMeet) {
     EXPECT_EQ(z.size(), 1u) << place.first << ' ' << place.second;
     on_border += place.first == o.x + kSquareSize;
   }
-  EXPECT_GE(on_border, 17u);
+  EXPECT_GE(on_border, kTerrainSteps + 1u);
 }
 
 TEST(GroundSurfaces, AStepAtTheBorderOfASquareIsMadeOnce) {

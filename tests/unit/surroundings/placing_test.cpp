@@ -41,6 +41,7 @@ SquareSurface wood(double x0, double x1) {
   SquareSurface out;
   out.plan.emplace_back();
   out.plan[0].outer.points = {{x0, 0}, {x1, 0}, {x1, 125}, {x0, 125}};
+  out.borders = {{{{x0, 0}, {x0, 125}}}, {{{x1, 0}, {x1, 125}}}};  // it goes on in the north and the south
   return out;
 }
 
@@ -68,12 +69,23 @@ TEST(ScatteredTrees, AreAsManyAsAskedAndKeepOffTheBorder) {
 }
 
 TEST(ScatteredTrees, StandWhereTheyStandHoweverTheWoodIsCut) {
-  const auto whole = scattered({wood(0, 125)}, {}), half = scattered({wood(0, 60)}, {});
+  SquareSurface west = wood(0, 60);
+  west.borders.pop_back();  // the wood goes on in the east
+  const auto whole = scattered({wood(0, 125)}, {}), half = scattered({west}, {});
   std::size_t known = 0;
   for (const PlannedObject& tree : half)
     for (const PlannedObject& other : whole) known += tree.place == other.place;
   EXPECT_GT(half.size(), 40u);
   EXPECT_EQ(known, half.size());
+}
+
+TEST(ScatteredTrees, StandOnTerrainAsTheyDoOnLevelGround) {
+  SquareSurface cut = wood(0, 125);
+  cut.plan.clear();
+  for (int x = 0; x < 125; x += 5)  // as triangles of a terrain cut it
+    cut.plan.emplace_back().outer.points = {
+        {static_cast<double>(x), 0}, {x + 5.0, 0}, {x + 5.0, 125}, {static_cast<double>(x), 125}};
+  EXPECT_EQ(scattered({cut}, {}).size(), scattered({wood(0, 125)}, {}).size());
 }
 
 TEST(ScatteredTrees, KeepOffMappedOnes) {

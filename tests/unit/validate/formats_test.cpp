@@ -48,7 +48,8 @@ TEST(Formats, FilesOfATile) {
 TEST(Formats, FilesOfSurroundingsAreTheirOwn) {
   const PathCase cases[] = {{"citygml/15_1_2_surroundings.gml", "15_1_2", Format::citygml},
                             {"citygml/15_1_2_surroundings.gml.gz", "15_1_2", Format::citygml},
-                            {"cityjson/15_1_2_surroundings.city.jsonl", "15_1_2", Format::cityjson}};
+                            {"cityjson/15_1_2_surroundings.city.jsonl", "15_1_2", Format::cityjson},
+                            {"tiles/15/1/2_surroundings.glb", "15_1_2", Format::gltf}};
   for (const PathCase& c : cases) {
     SCOPED_TRACE(c.path);
     EXPECT_FALSE(tile_path(c.path));
@@ -57,7 +58,7 @@ TEST(Formats, FilesOfSurroundingsAreTheirOwn) {
     EXPECT_EQ(path->tile, c.tile);
     EXPECT_EQ(path->format, c.format);
   }
-  for (const char* path : {"citygml/15_1_2.gml", "tiles/15/1/2_surroundings.glb", "surroundings.gml", ""})
+  for (const char* path : {"citygml/15_1_2.gml", "tiles/15/1/2.glb", "surroundings.gml", ""})
     EXPECT_FALSE(surroundings_path(path)) << path;
 }
 

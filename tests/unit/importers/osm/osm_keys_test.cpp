@@ -73,7 +73,7 @@ constexpr std::pair<model::FeatureKind, const char*> kKinds[] = {
     {model::FeatureKind::shop, "shop"},           {model::FeatureKind::amenity, "amenity"},
     {model::FeatureKind::passage, "passage"},     {model::FeatureKind::roof_line, "roof line"},
     {model::FeatureKind::roof_apex, "roof apex"}, {model::FeatureKind::place, "place"},
-    {model::FeatureKind::boundary, "boundary"}};
+    {model::FeatureKind::boundary, "boundary"},   {model::FeatureKind::surrounding, "surroundings, where asked for"}};
 
 std::string kept_as(const InterestRule& rule) {
   std::string out = rule.mark == ObjectMark::building        ? "building"
@@ -111,7 +111,11 @@ std::string page() {
            (rule.closed == ClosedWay::area   ? "an area"
             : rule.closed == ClosedWay::line ? "a line"
                                              : "") +
-           " | " + (rule.nodes ? "yes" : "no") + " |\n";
+           " | " +
+           (!rule.ways   ? "alone"
+            : rule.nodes ? "yes"
+                         : "no") +
+           " |\n";
   }
   return out;
 }
