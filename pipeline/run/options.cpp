@@ -198,9 +198,9 @@ base::OptionTable<B> place_and_ground() {
           {.name = "surroundings",
            .key = "surroundings",
            .argument = "LAYERS",
-           .choices = {"on", "off", "ground", "bodies", "objects"},
            .help = "what stands and lies around the houses: on, off, or some of ground, bodies, objects with commas "
                    "between them (docs/surroundings.md)",
+           .choices = {"on", "off", "ground", "bodies", "objects"},
            .record = OptionRecord::yes},
           [](B& b, const std::string& text) { b.surroundings = surroundings::parse_surroundings(text); },
           [](const B& b) { return surroundings::show_surroundings(b.surroundings); },

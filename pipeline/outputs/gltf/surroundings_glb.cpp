@@ -249,10 +249,10 @@ class ShapeWriter {
         wide.push_back(static_cast<float>(rows[list[k]]));
         most_row = std::max(most_row, rows[list[k]]);
         const double w =
-            static_cast<double>(object.width) *
+            static_cast<double>(step(object.width)) *
             std::max({std::fabs(form.min.x), std::fabs(form.min.y), std::fabs(form.max.x), std::fabs(form.max.y)}) *
             1.4143;
-        const double h = static_cast<double>(object.height);
+        const double h = static_cast<double>(step(object.height));
         const Point3 low{local[k].x - w, local[k].y - w, local[k].z + h * std::min(0.0, form.min.z) - 0.05};
         const Point3 high{local[k].x + w, local[k].y + w, local[k].z + h * form.max.z + 0.05};
         glb.min =
