@@ -17,7 +17,7 @@ namespace blockrand::surroundings {
 /// m; the ground is worked out in squares of this size, whose corners are multiples of it in the build CRS. A block is one to
 /// four of them.
 inline constexpr double kSquareSize = 125;
-/// Of a side: triangles of terrain are 12.5 m long. With 7.8 m, Monaco on its slope takes 8.8 MB in place of 4.5.
+/// Of a side: triangles of terrain are 12.5 m long. With 7.8 m a town on a slope takes a third more bytes.
 inline constexpr int kTerrainSteps = 10;
 
 /// m above the build's height reference at a place; nothing where it is not known.
