@@ -173,6 +173,14 @@ async function first_picture_and_orbit(page) {
   await page.mouse.move(660, 480);
   await page.mouse.wheel(0, -400);
   const nearer = await settled(page);
+  // Movements run out within a time, however long a picture takes.
+  const last = (await page.evaluate('blockrandView.frameTimes()')).slice(-5);
+  const frame = last.reduce((sum, time) => sum + time, 0) / Math.max(1, last.length);
+  check(
+    (nearer.pictures - turned.pictures) * frame < 2500 + 12 * frame,
+    'a movement takes few pictures where they are slow',
+    [nearer.pictures - turned.pictures, frame],
+  );
   check(
     distance(nearer.camera, nearer.target) < 0.95 * distance(turned.camera, turned.target),
     'the wheel goes nearer',

@@ -5,11 +5,13 @@ import type { Ground } from './ground';
 
 const KEY_STEP = 24; // pixels that a key moves the picture
 const FLIGHT = 1300; // ms
+const DAMPING = 0.12; // share of a movement that is made good in a frame of a sixtieth of a second
 
 export class Flight {
   readonly controls: MapControls;
   private flight: { from: [Vector3, Vector3]; to: [Vector3, Vector3]; start: number; length: number } | null = null;
   private changed = true;
+  private updated = performance.now();
   /** By the reader, ever. */
   touched = false;
 
@@ -21,7 +23,7 @@ export class Flight {
     this.controls = new MapControls(camera, canvas);
     Object.assign(this.controls, {
       enableDamping: true,
-      dampingFactor: 0.12,
+      dampingFactor: DAMPING,
       zoomToCursor: true,
       screenSpacePanning: false,
       minDistance: 12,
@@ -107,6 +109,10 @@ export class Flight {
 
   /** Moves on. True: the camera is elsewhere than before. */
   update(): boolean {
+    // Movements run out over a time, not over a number of pictures: where the processor draws, sixty take minutes.
+    const now = performance.now();
+    this.controls.dampingFactor = 1 - (1 - DAMPING) ** ((60 * (now - this.updated)) / 1000);
+    this.updated = now;
     if (this.flight) {
       const { from, to, start, length } = this.flight;
       const t = Math.min(1, (performance.now() - start) / length),
