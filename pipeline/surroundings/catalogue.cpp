@@ -185,6 +185,7 @@ Catalogue::Catalogue(const std::string& path) {
     if (auto tags = table.table("tags"))
       for (const std::string& key : tags->keys())
         meant.tags.emplace_back(key, tags->texts(key).value_or(std::vector<std::string>{}));
+    if (auto wires = table.pairs("wires")) meant.wires = std::move(*wires);
     shape_tags_.push_back(std::move(meant));
     shown_.shapes.push_back(read_shape(table, name, material_of));
     shapes_[shown_.shapes.back().kind].push_back(static_cast<std::uint16_t>(shown_.shapes.size() - 1));

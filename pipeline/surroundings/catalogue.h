@@ -53,6 +53,8 @@ struct GroundRule {
 struct ShapeTags {
   std::vector<std::pair<std::string, std::vector<std::string>>> tags;  ///< key and values: one of them is enough
   bool by_height = true;                                               ///< a tagged height alone may mean it
+  /// m in the shape's frame: how far across its front, to both sides alike, and how high it holds wires.
+  std::vector<std::pair<double, double>> wires;
 };
 
 class Catalogue {
@@ -77,6 +79,8 @@ class Catalogue {
   /// Shapes of a kind, in the order of the file; empty for unknown ones.
   const std::vector<std::uint16_t>& shapes_of(std::string_view kind) const;
   const ShapeTags& tags_of(std::uint16_t shape) const { return shape_tags_[shape]; }
+  /// Where a shape holds wires: across and up.
+  const std::vector<std::pair<double, double>>& wires_of(std::uint16_t shape) const { return shape_tags_[shape].wires; }
 
  private:
   model::SurroundingCatalogue shown_;

@@ -8,6 +8,7 @@
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/osm_keys.h"
 #include "pipeline/surroundings/street_profile.h"
+#include "pipeline/surroundings/wire_bodies.h"
 
 namespace blockrand::surroundings {
 namespace {
@@ -48,21 +49,14 @@ double usual_width(std::string_view waterway) {
                                                       : 0;
 }
 
-CrossingMarking crossing_of(const TagOf& tag) {
-  if (tag(osm_key::kHighway) != "crossing") return CrossingMarking::none;
-  const std::string_view painted = tag(osm_key::kCrossingMarkings), kind = tag(osm_key::kCrossing);
-  if (painted == "no" || kind == "no" || kind == "unmarked" || kind == "informal") return CrossingMarking::none;
-  if (painted.starts_with("zebra") || kind == "zebra") return CrossingMarking::zebra;
-  if (!painted.empty()) return CrossingMarking::lines;
-  if (kind == "marked" || kind == "uncontrolled") return CrossingMarking::zebra;
-  return kind == "traffic_signals" ? CrossingMarking::lines : CrossingMarking::none;
-}
-
 /// m: how far beyond its points a thing reaches.
 double reach_of(SurroundingKind kind, const model::Feature& feature, const TagOf& tag) {
   if (feature.area) return 0;
   if (kind == SurroundingKind::road || kind == SurroundingKind::railway || kind == SurroundingKind::bridge)
     return kStreetReach;
+  // Wires hang beside their line, portals stand beside the end of theirs.
+  if (kind == SurroundingKind::power || kind == SurroundingKind::aerialway || kind == SurroundingKind::tunnel)
+    return 20;
   if (kind != SurroundingKind::water) return 5;
   return length_of(tag(osm_key::kWidth)).value_or(kRiverWidth) / 2 + 1;
 }
@@ -118,6 +112,9 @@ ClaimFinder::ClaimFinder(const SurroundingInputs& inputs) : in_(inputs) {
     if (feature.id.type == model::OsmType::node)
       if (const CrossingMarking marking = crossing_of(tag); marking != CrossingMarking::none)
         crossings_.emplace_back(feature.id.number, marking);
+    if (feature.id.type == model::OsmType::node)
+      if (const StreetControl control = control_of(tag); control.kind != ControlKind::none)
+        controls_.emplace_back(feature.id.number, control);
     const std::optional<SurroundingKind> kind = kind_of(feature, tag, in_.catalogue);
     if (!kind) continue;
     Thing thing{f, *kind, hidden_state(feature, tag)};
@@ -131,14 +128,22 @@ ClaimFinder::ClaimFinder(const SurroundingInputs& inputs) : in_(inputs) {
       box.minimum = {box.minimum.x - reach, box.minimum.y - reach};
       box.maximum = {box.maximum.x + reach, box.maximum.y + reach};
     }
-    if ((*kind == SurroundingKind::road || *kind == SurroundingKind::bridge) && !feature.area && !thing.hidden)
+    const auto add_nodes = [&](std::vector<std::int64_t>& out) {
       for (const model::MappedRing& ring : e.rings_of(feature.rings)) {
         const auto nodes = e.nodes_of(ring);
         for (std::size_t i = 0; i < nodes.size(); ++i) {
-          street_nodes_.push_back(nodes[i]);
-          if (i > 0 && i + 1 < nodes.size()) street_nodes_.push_back(nodes[i]);
+          out.push_back(nodes[i]);
+          if (i > 0 && i + 1 < nodes.size()) out.push_back(nodes[i]);
         }
       }
+    };
+    if ((*kind == SurroundingKind::road || *kind == SurroundingKind::bridge) && !feature.area && !thing.hidden)
+      add_nodes(street_nodes_);
+    if (*kind == SurroundingKind::railway && !feature.area && !thing.hidden && is_track(tag(osm_key::kRailway)))
+      add_nodes(track_nodes_);
+    if (has_wires(in_, thing) && !thing.hidden)
+      for (const std::int64_t node : e.nodes_of(e.rings_of(feature.rings)[0]))
+        wire_nodes_.emplace_back(node, static_cast<std::uint32_t>(things_.size()));
     if (*kind == SurroundingKind::bridge && !feature.area && feature.rings.count == 1) {
       const auto nodes = e.nodes_of(e.rings_of(feature.rings)[0]);
       if (nodes.size() >= 2)
@@ -155,6 +160,10 @@ ClaimFinder::ClaimFinder(const SurroundingInputs& inputs) : in_(inputs) {
   std::ranges::sort(bridge_ends_);
   std::ranges::sort(gates_);
   std::ranges::sort(crossings_);
+  std::ranges::sort(controls_, {}, &std::pair<std::int64_t, StreetControl>::first);
+  std::ranges::sort(track_nodes_);
+  std::ranges::sort(wire_nodes_);
+  wire_nodes_.erase(std::unique(wire_nodes_.begin(), wire_nodes_.end()), wire_nodes_.end());
   boxes.clear();
   for (const context::Block& block : in_.context.blocks)
     boxes.push_back(block.gives_ratios() ? geometry::box_of(block.polygon.outer.points) : PlanBox{});
@@ -191,11 +200,6 @@ std::vector<std::vector<Point2>> ClaimFinder::lines_of(const Thing& thing) const
   return out;
 }
 
-std::size_t ClaimFinder::streets_at(std::int64_t node) const {
-  const auto [first, last] = std::ranges::equal_range(street_nodes_, node);
-  return static_cast<std::size_t>(last - first);
-}
-
 bool ClaimFinder::claims_ground(const Thing& thing) const {
   using enum SurroundingKind;
   const model::Feature& feature = in_.extract.features[thing.feature];
@@ -204,99 +208,6 @@ bool ClaimFinder::claims_ground(const Thing& thing) const {
   if (thing.kind == road) return street_profile(tag, true, in_.catalogue).has_value();
   if (thing.kind == railway) return is_track(tag(osm_key::kRailway));
   return thing.kind == water && (usual_width(tag(osm_key::kWaterway)) > 0 || is_coast(tag));
-}
-
-CrossingMarking ClaimFinder::crossing_at(std::int64_t node) const {
-  const auto at = std::ranges::lower_bound(crossings_, node, {}, &std::pair<std::int64_t, CrossingMarking>::first);
-  return at != crossings_.end() && at->first == node ? at->second : CrossingMarking::none;
-}
-
-double ClaimFinder::opening_at(std::int64_t node, double street, double gate) const {
-  if (streets_at(node) > 0) return street;
-  return std::ranges::binary_search(gates_, node) ? gate : 0;
-}
-
-ClaimFinder::BridgeRun ClaimFinder::bridge_run(const Thing& thing) const {
-  const model::Extract& e = in_.extract;
-  const auto index = static_cast<std::uint32_t>(std::ranges::lower_bound(things_, thing.feature, {}, &Thing::feature) -
-                                                things_.begin());
-  const auto nodes_of = [&](std::uint32_t t) {
-    return e.nodes_of(e.rings_of(e.features[things_[t].feature].rings)[0]);
-  };
-  const auto line_of = [&](std::uint32_t t) {
-    const std::vector<std::vector<Point2>> lines = lines_of(things_[t]);
-    return lines.empty() ? std::vector<Point2>() : lines[0];
-  };
-  const auto layer_of = [&](std::uint32_t t) {
-    return length_of(tags_of(things_[t].feature)(osm_key::kLayer)).value_or(1);
-  };
-  BridgeRun run;
-  run.line = line_of(index);
-  run.length = surroundings_length(run.line);
-  run.layer = layer_of(index);
-  const BridgeRun alone = run;
-  // Onwards from both ends. Where the run is too long, whichever bridge asks, each of its bridges is one by itself.
-  std::vector<std::uint32_t> known{index};
-  for (const bool forward : {false, true}) {
-    std::uint32_t at = index;
-    std::int64_t node = forward ? nodes_of(index).back() : nodes_of(index).front();
-    while (run.length <= kMostRun) {
-      const auto first = std::ranges::lower_bound(bridge_ends_, std::pair(node, std::uint32_t{0}));
-      std::vector<std::uint32_t> meet;
-      for (auto b = first; b != bridge_ends_.end() && b->first == node; ++b) meet.push_back(b->second);
-      if (meet.size() != 2) break;
-      const std::uint32_t next = meet[0] == at ? meet[1] : meet[0];
-      if (std::ranges::find(known, next) != known.end()) break;
-      known.push_back(next);
-      std::vector<Point2> line = line_of(next);
-      if (line.size() < 2) break;
-      const bool begins = nodes_of(next).front() == node;
-      const double length = surroundings_length(line);
-      run.length += length;
-      run.layer = std::max(run.layer, layer_of(next));
-      if (begins != forward) std::ranges::reverse(line);
-      if (forward) {
-        run.line.insert(run.line.end(), line.begin(), line.end());
-      } else {
-        run.before += length;
-        run.line.insert(run.line.begin(), line.begin(), line.end());
-      }
-      node = begins ? nodes_of(next).back() : nodes_of(next).front();
-      at = next;
-    }
-  }
-  if (run.length > kMostRun) run = alone;
-  if (run.line.empty()) return run;
-  run.start = run.line.front(), run.end = run.line.back();
-  run.crosses_traffic = run.length > kLookedThrough || crosses_traffic(run);
-  return run;
-}
-
-bool ClaimFinder::crosses_traffic(const BridgeRun& run) const {
-  const GroundClaims claims = claims_in(geometry::box_of(run.line));
-  double along = 0;
-  for (std::size_t i = 1; i < run.line.size(); ++i) {
-    const Point2 a = run.line[i - 1], b = run.line[i];
-    const double length = std::hypot(b.x - a.x, b.y - a.y);
-    for (double s = 0; s < length; s += 1) {
-      if (along + s < kApproach || along + s > run.length - kApproach) continue;
-      const Point2 p{a.x + s / length * (b.x - a.x), a.y + s / length * (b.y - a.y)};
-      for (const geometry::AreaClaim& claim : claims.claims) {
-        if (p.x < claim.box.minimum.x || p.x > claim.box.maximum.x || p.y < claim.box.minimum.y ||
-            p.y > claim.box.maximum.y)
-          continue;
-        if (!geometry::claim_holds(claim, p)) continue;
-        using enum GroundClass;
-        const GroundLabel& label = claims.labels[claim.label];
-        if (!label.building && (label.ground == carriageway || label.ground == parking_lane ||
-                                label.ground == rail_bed || label.ground == cycle_way || label.ground == footway))
-          return true;
-        break;
-      }
-    }
-    along += length;
-  }
-  return false;
 }
 
 std::vector<std::vector<Point2>> ClaimFinder::judged_pieces(const std::vector<Point2>& line) {

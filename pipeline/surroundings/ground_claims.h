@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "pipeline/model/surroundings.h"
 #include "pipeline/surroundings/catalogue.h"
 #include "pipeline/surroundings/kinds.h"
+#include "pipeline/surroundings/street_controls.h"
 
 namespace blockrand::surroundings {
 
@@ -43,6 +45,8 @@ struct GroundLabel {
   model::OsmId object;  ///< number 0: what stands around tells
   model::SurroundingMaterial material = 0;
   float offset = 0;  ///< m above the terrain
+  /// m above the height reference: level ground, whatever the terrain does below it.
+  std::optional<double> level = std::nullopt;
   float trees_per_hectare = 0;
 };
 
@@ -65,9 +69,6 @@ inline constexpr double kApproach = 8;
 
 /// m: how far from its line the ground of a street reaches at most, and buildings stand that make a street one of a town.
 inline constexpr double kStreetReach = 40, kBuiltUpReach = 25;
-
-/// How a crossing is painted.
-enum class CrossingMarking : std::uint8_t { none, lines, zebra };
 
 /// Finds what claims the ground of a place. Read-only once made, safe to share between threads.
 class ClaimFinder {
@@ -96,6 +97,18 @@ class ClaimFinder {
   std::size_t streets_at(std::int64_t node) const;
   /// What a node of a street is as a crossing.
   CrossingMarking crossing_at(std::int64_t node) const;
+  /// What makes vehicles stop at a node.
+  StreetControl control_at(std::int64_t node) const;
+  /// How many ways of tracks in the open meet at a node: as streets_at.
+  std::size_t tracks_at(std::int64_t node) const;
+  /// The lines of wires that have a node, as things, ascending.
+  std::vector<std::uint32_t> wires_at(std::int64_t node) const;
+  /// The feature that a node is.
+  std::optional<std::uint32_t> feature_of_node(std::int64_t node) const;
+  /// Whether a building that stands on the ground has a place.
+  bool building_at(model::Point2 place) const;
+  /// The thing that an object is; null: none.
+  const Thing* thing_of(model::OsmId id) const;
   /// m: half of the opening of a barrier at one of its nodes: `street` where one of a street is, `gate` where a gate is, else 0.
   double opening_at(std::int64_t node, double street, double gate) const;
 
@@ -137,6 +150,9 @@ class ClaimFinder {
   geometry::BoxIndex passages_;
   std::vector<std::pair<std::int64_t, std::uint32_t>> bridge_ends_;  ///< node and thing, ascending
   std::vector<std::pair<std::int64_t, CrossingMarking>> crossings_;  ///< nodes, ascending
+  std::vector<std::pair<std::int64_t, StreetControl>> controls_;     ///< nodes, ascending
+  std::vector<std::pair<std::int64_t, std::uint32_t>> wire_nodes_;   ///< node and thing, ascending
+  std::vector<std::int64_t> track_nodes_;                            ///< as street_nodes_
   std::vector<std::int64_t> gates_;                                  ///< nodes, ascending
   std::vector<std::int64_t> street_nodes_;  ///< of ways of streets, an end once, a node within twice; ascending
 };

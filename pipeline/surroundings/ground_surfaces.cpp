@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 namespace blockrand::surroundings {
 namespace {
@@ -19,27 +20,41 @@ class Lifted {
 
   std::vector<Point3> ring(const model::Ring& ring) const {
     std::vector<Point3> out;
-    for (const Point2 p : ring.points) out.push_back(point(p, label_.offset));
+    for (const Point2 p : ring.points) out.push_back(point(p, label_));
     return out;
   }
-  Point3 point(Point2 p, double offset) const { return {p.x, p.y, model::snap(ground_.at(p) + offset)}; }
 
   /// The step along an edge, which has its face on the left, down to or up from what lies beyond.
   /// \return nothing where there is none, or it belongs to the neighbour
   void add_step(Point2 a, Point2 b, const GroundLabel& beyond, std::vector<FlatPolygon>& out) const {
-    const double own = label_.offset, other = beyond.building ? 0 : beyond.offset;
-    if (own == other) return;
-    // Beside a building the lower ground has the foot of the wall, seen from its own side.
-    if (beyond.building ? own > other : own < other) return;
-    const Point3 a_own = point(a, own), b_own = point(b, own), a_other = point(a, other), b_other = point(b, other);
-    if (own > other) {
-      out.push_back({{a_other, b_other, b_own, a_own}, {}});
-    } else {
-      out.push_back({{b_own, a_own, a_other, b_other}, {}});
+    // Beside a building the terrain has the foot of the wall, and the step up to it is seen from the ground.
+    const GroundLabel foot;
+    const GroundLabel& other = beyond.building ? foot : beyond;
+    Point3 a_own = point(a, label_), b_own = point(b, label_), a_other = point(a, other), b_other = point(b, other);
+    if (beyond.building) std::swap(a_own, a_other), std::swap(b_own, b_other);
+    double a_up = a_own.z - a_other.z, b_up = b_own.z - b_other.z;
+    if (a_up <= 0 && b_up <= 0) return;
+    if (a_up < 0 || b_up < 0) {
+      // Level ground cuts the terrain along the edge: each side has its own part of the step, up to where they cross.
+      const double t = a_up / (a_up - b_up);
+      const Point2 p = model::snap(Point2{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)});
+      const Point3 cut{p.x, p.y, model::snap(a_own.z + t * (b_own.z - a_own.z))};
+      (a_up < 0 ? a_own : b_own) = cut;
+      (a_up < 0 ? a_other : b_other) = cut;
+      (a_up < 0 ? a_up : b_up) = 0;
     }
+    FlatPolygon face{{a_other, b_other, b_own, a_own}, {}};
+    // A triangle where both heights are one at an end.
+    if (b_up == 0) face.outer.erase(face.outer.begin() + 2);
+    if (a_up == 0) face.outer.pop_back();
+    if (beyond.building) std::ranges::reverse(face.outer);
+    out.push_back(std::move(face));
   }
 
  private:
+  Point3 point(Point2 p, const GroundLabel& label) const {
+    return {p.x, p.y, model::snap(label.level.value_or(ground_.at(p)) + static_cast<double>(label.offset))};
+  }
   const SquareGround& ground_;
   const GroundLabel& label_;
 };

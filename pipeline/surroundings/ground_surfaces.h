@@ -22,7 +22,7 @@ struct SquareSurface {
 /// The surfaces of a square, ascending by label; the land that nobody claims last, with a label behind those of the claims.
 ///
 /// Surfaces and buildings cover the square and do not overlap in plan (partition_of). Their heights are those of the terrain and
-/// their label's offset; where neighbours differ, an upright face closes the step, which belongs to the higher of both, or beside a
+/// their label's offset, or level where it has one (still water); where neighbours differ, an upright face closes the step, which belongs to the higher of both, or beside a
 /// building to the ground.
 /// \param land  the label of what nobody claims
 std::vector<SquareSurface> ground_surfaces(SquareIndex square, const SquareGround& ground, const GroundClaims& claims,

@@ -8,6 +8,10 @@
 #include <utility>
 
 #include "pipeline/model/osm_keys.h"
+#include "pipeline/surroundings/cliff_bodies.h"
+#include "pipeline/surroundings/line_strips.h"
+#include "pipeline/surroundings/stair_bodies.h"
+#include "pipeline/surroundings/street_markings.h"
 #include "pipeline/surroundings/street_profile.h"
 
 namespace blockrand::surroundings {
@@ -20,15 +24,8 @@ using model::Point3;
 using model::SurroundingBody;
 namespace osm_key = model::osm_key;
 
-/// m: how uneven the ground below a piece may be; else it is cut into pieces of a metre.
-constexpr double kUneven = 0.2;
 /// m: pieces of decks, which bend where they reach their height.
 constexpr double kDeckStep = 10;
-// Markings, m [RMS, FGSV 1993: narrow lines 0.12, within towns dashes of 3 with gaps of 6; crossings of stripes of 0.50, 3 to 4 long].
-constexpr double kLine = 0.12, kDash = 3, kDashPeriod = 9, kStripe = 0.5, kZebraLength = 3.5, kPaint = 0.012;
-/// m. A longer straight line is no street.
-constexpr double kMostMarked = 20000;
-constexpr double kJunctionFree = 12, kCrossingFree = 5;
 /// Of one segment: no bridge is longer.
 constexpr double kMostDeckPieces = 5000;
 /// m: how deep bodies reach into the ground, so that no gap shows on a slope.
@@ -39,125 +36,6 @@ constexpr double kClearance = 4.5, kLowClearance = 0.6, kDeck = 0.6, kRailing = 
 constexpr double kMostSlope = 0.06, kMostRailSlope = 0.025;
 // m: half of the opening where a street or a gate is a point of a barrier.
 constexpr double kStreetOpening = 1.75, kGateOpening = 0.6;
-
-/// Directions and lengths of a line, for points beside it.
-class OffsetLine {
- public:
-  explicit OffsetLine(std::vector<Point2> points) : points_(std::move(points)) {
-    along_.push_back(0);
-    for (std::size_t i = 1; i < points_.size(); ++i)
-      along_.push_back(along_.back() + std::hypot(points_[i].x - points_[i - 1].x, points_[i].y - points_[i - 1].y));
-  }
-  std::size_t size() const { return points_.size(); }
-  const std::vector<Point2>& points() const { return points_; }
-  double along(std::size_t i) const { return along_[i]; }
-  double length() const { return along_.back(); }
-
-  /// The point `right` metres to the right of point i, on the bisector of the bend there; at a bend that is too sharp for one,
-  /// square to a segment, which begins or ends there. Lines that repeat their first point bend there, too.
-  Point2 beside(std::size_t i, double right, std::size_t segment) const {
-    const bool closed = points_.front() == points_.back() && points_.size() > 3;
-    const std::size_t last = points_.size() - 1;
-    const Point2 before = normal(i > 0 ? i - 1 : closed ? last - 1 : 0);
-    const Point2 after = normal(i < last ? i : closed ? 0 : last - 1);
-    double x = before.x + after.x, y = before.y + after.y;
-    const double square = x * x + y * y;
-    // 2 / |n1 + n2|² along n1 + n2 is the mitre.
-    double scale = square > 1 ? 2 / square : 1;
-    if (square <= 1) x = normal(segment).x, y = normal(segment).y;
-    return model::snap(Point2{points_[i].x + right * scale * x, points_[i].y + right * scale * y});
-  }
-
- private:
-  /// To the right of the segment that begins at point i.
-  Point2 normal(std::size_t i) const {
-    const double dx = points_[i + 1].x - points_[i].x, dy = points_[i + 1].y - points_[i].y;
-    const double length = std::hypot(dx, dy);
-    return length > 0 ? Point2{dy / length, -dx / length} : Point2{0, 0};
-  }
-  std::vector<Point2> points_;
-  std::vector<double> along_;
-};
-
-/// A strip beside a line between two heights. \param heights  of its points: below and above
-/// \param takes  which segments; ends are closed where a run of them begins and ends
-void add_strip(const OffsetLine& line, double left, double right,
-               const std::function<std::pair<double, double>(std::size_t)>& heights,
-               const std::function<bool(std::size_t)>& takes, bool underside, std::vector<FlatPolygon>& out) {
-  std::size_t segment = 0;
-  const auto point = [&](std::size_t i, double side, bool top) {
-    const Point2 p = line.beside(i, side, segment);
-    const auto [low, high] = heights(i);
-    return Point3{p.x, p.y, model::snap(top ? high : low)};
-  };
-  const auto quad = [&](Point3 a, Point3 b, Point3 c, Point3 d) {
-    if (a == b || c == d) return;
-    out.push_back({{a, b, c}, {}});
-    out.push_back({{a, c, d}, {}});
-  };
-  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    if (!takes(i)) continue;
-    segment = i;
-    const Point3 l0 = point(i, left, true), r0 = point(i, right, true), l1 = point(i + 1, left, true),
-                 r1 = point(i + 1, right, true);
-    const Point3 l0_low = point(i, left, false), r0_low = point(i, right, false), l1_low = point(i + 1, left, false),
-                 r1_low = point(i + 1, right, false);
-    quad(r0, r1, l1, l0);
-    if (l0_low != l0) {
-      quad(r0_low, r1_low, r1, r0);
-      quad(l1_low, l0_low, l0, l1);
-      if (i == 0 || !takes(i - 1)) quad(l0_low, r0_low, r0, l0);
-      if (i + 2 == line.size() || !takes(i + 1)) quad(r1_low, l1_low, l1, r1);
-      if (underside) quad(l0_low, l1_low, r1_low, r0_low);
-    }
-  }
-}
-
-/// The part of a line around a box, in pieces of at most kLongest, and of a metre where the ground below is uneven or a
-/// building stands on it. Its far segments stay as they are: nobody takes them.
-std::vector<Point2> following(const std::vector<Point2>& line, const GroundAtPlace& ground,
-                              const geometry::PlanBox& around) {
-  std::vector<Point2> out;
-  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    out.push_back(line[i]);
-    const Point2 a = line[i], b = line[i + 1];
-    const double length = std::hypot(b.x - a.x, b.y - a.y);
-    const auto at = [&](double s) { return Point2{a.x + s / length * (b.x - a.x), a.y + s / length * (b.y - a.y)}; };
-    // The stretch of the segment whose places may be taken.
-    geometry::PlanBox own;
-    own.include(a), own.include(b);
-    if (!own.near(around, 0) || !(length > 0)) continue;
-    double from = 0, to = length;
-    const auto cut = [&](double p, double d, double low, double high) {
-      if (d == 0) return;
-      const double s = (low - p) / d * length, t = (high - p) / d * length;
-      from = std::max(from, std::min(s, t)), to = std::min(to, std::max(s, t));
-    };
-    cut(a.x, b.x - a.x, around.minimum.x, around.maximum.x);
-    cut(a.y, b.y - a.y, around.minimum.y, around.maximum.y);
-    if (from > to) continue;
-    // Pieces are counted from the start of the segment: every tile finds the same ones.
-    const double parts = std::ceil(length / kLongest), step = length / parts;
-    const double first = std::max(0.0, std::floor(from / step)), last = std::min(parts, std::ceil(to / step));
-    for (double part = first; part < last; ++part) {
-      const double begin = part * step, end = std::min(length, begin + step);
-      if (part > 0) out.push_back(model::snap(at(begin)));
-      const GroundAt here = ground(at(begin));
-      bool even = true;
-      for (double s = begin; s <= end && even; s += 1) {
-        const GroundAt there = ground(at(s));
-        even = there.building == here.building && std::fabs(there.height - here.height) < kUneven;
-      }
-      if (even) continue;
-      const double pieces = std::ceil(end - begin);
-      for (double k = 1; k < pieces; ++k) out.push_back(model::snap(at(begin + (end - begin) * k / pieces)));
-    }
-    if (last < parts) out.push_back(model::snap(at(last * step)));
-  }
-  if (!line.empty()) out.push_back(line.back());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
 
 // ---- barriers
 
@@ -254,18 +132,17 @@ std::vector<std::vector<Point2>> without_openings(const std::vector<Point2>& lin
 
 class Bodies {
  public:
-  Bodies(const SurroundingInputs& in, const ClaimFinder& claims, const Thing& thing,
-         const std::function<bool(Point2)>& is_own, const geometry::PlanBox& around, const GroundAtPlace& ground,
-         const std::function<double(Point2)>& run_height)
-      : in_(in),
-        claims_(claims),
+  Bodies(const BodySite& site, const Thing& thing)
+      : site_(site),
+        in_(site.in),
+        claims_(site.claims),
         thing_(thing),
-        is_own_(is_own),
-        around_(around),
-        ground_(ground),
-        run_height_(run_height),
-        tag_(claims.tags_of(thing.feature)),
-        feature_(in.extract.features[thing.feature]) {}
+        is_own_(site.is_own),
+        around_(site.around),
+        ground_(site.ground),
+        run_height_(site.terrain_height),
+        tag_(site.claims.tags_of(thing.feature)),
+        feature_(site.in.extract.features[thing.feature]) {}
 
   std::vector<SurroundingBody> make() {
     switch (thing_.kind) {
@@ -280,7 +157,12 @@ class Bodies {
         if (!feature_.area) bridge();
         break;
       case SurroundingKind::road:
-        if (!feature_.area) markings();
+        if (feature_.area) break;
+        take(street_markings(site_, thing_));
+        take(stair_bodies(site_, thing_));
+        break;
+      case SurroundingKind::cliff:
+        take(cliff_bodies(site_, thing_));
         break;
       case SurroundingKind::aeroway:
       case SurroundingKind::aerialway:
@@ -290,7 +172,6 @@ class Bodies {
       case SurroundingKind::pool:
       case SurroundingKind::golf:
       case SurroundingKind::pitch:
-      case SurroundingKind::cliff:
       case SurroundingKind::power:
       case SurroundingKind::wind_turbine:
       case SurroundingKind::mast:
@@ -311,6 +192,9 @@ class Bodies {
     made.body = kind, made.object = feature_.id, made.material = in_.catalogue.material(material);
     out_.push_back(std::move(made));
     return out_.back();
+  }
+  void take(std::optional<SurroundingBody> made) {
+    if (made) out_.push_back(std::move(*made));
   }
   void drop_empty() {
     std::erase_if(out_, [](const SurroundingBody& b) { return b.faces.empty(); });
@@ -390,95 +274,6 @@ class Bodies {
     drop_empty();
   }
 
-  /// A rectangle on the carriageway around a point of a line's direction. \param along, across  m, of its sides
-  void paint(Point2 centre, Point2 direction, double along, double across, std::vector<FlatPolygon>& faces) const {
-    if (!is_own_(centre)) return;
-    const GroundAt at = ground_(centre);
-    if (at.building || at.ground != model::GroundClass::carriageway) return;
-    FlatPolygon face;
-    constexpr double kCorners[4][2] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
-    for (const auto& c : kCorners) {
-      const Point2 p = model::snap(Point2{centre.x + c[0] * along * direction.x - c[1] * across * direction.y,
-                                          centre.y + c[0] * along * direction.y + c[1] * across * direction.x});
-      const GroundAt corner = ground_(p);
-      if (corner.building || corner.ground != model::GroundClass::carriageway) return;
-      face.outer.push_back({p.x, p.y, model::snap(corner.height + kPaint)});
-    }
-    faces.push_back({{face.outer[0], face.outer[1], face.outer[2]}, {}});
-    faces.push_back({{face.outer[0], face.outer[2], face.outer[3]}, {}});
-  }
-
-  /// Lines between lanes, and crossings.
-  void markings() {
-    const std::optional<StreetProfile> profile = street_profile(tag_, true, in_.catalogue);
-    if (!profile || profile->carriageway_right - profile->carriageway_left < 4) return;
-    const std::string_view highway = tag_(osm_key::kHighway);
-    constexpr std::array<std::string_view, 10> kMarked{"motorway",       "trunk",         "primary",    "secondary",
-                                                       "tertiary",       "motorway_link", "trunk_link", "primary_link",
-                                                       "secondary_link", "tertiary_link"};
-    const double left = profile->carriageway_left, right = profile->carriageway_right;
-    int lanes = profile->lanes;
-    const bool main_street = std::ranges::find(kMarked, highway) != kMarked.end();
-    const std::string_view oneway = tag_(osm_key::kOneway);
-    if (lanes == 0 && main_street && (oneway.empty() || oneway == "no") && right - left >= 5.5) lanes = 2;
-    if (!main_street && (lanes < 2 || right - left < 2.75 * lanes)) lanes = 0;
-    std::vector<FlatPolygon>& faces = body(BodyClass::marking, "marking_white").faces;
-    const auto rings = in_.extract.rings_of(feature_.rings);
-    const auto lines = claims_.lines_of(thing_);
-    for (std::size_t l = 0; l < lines.size(); ++l) {
-      const std::vector<Point2>& line = lines[l];
-      const auto nodes = in_.extract.nodes_of(rings[l]);
-      if (line.size() < 2 || nodes.size() != line.size()) continue;
-      const OffsetLine offset(line);
-      std::vector<double> junctions, crossings;  // places along the line, m
-      for (std::size_t i = 0; i < line.size(); ++i) {
-        if (claims_.streets_at(nodes[i]) > 2) junctions.push_back(offset.along(i));
-        const CrossingMarking marking = claims_.crossing_at(nodes[i]);
-        if (marking == CrossingMarking::none) continue;
-        crossings.push_back(offset.along(i));
-        const std::size_t from = i > 0 ? i - 1 : 0, to = std::min(i + 1, line.size() - 1);
-        const double dx = line[to].x - line[from].x, dy = line[to].y - line[from].y, length = std::hypot(dx, dy);
-        if (!(length > 0)) continue;
-        const Point2 d{dx / length, dy / length};
-        const auto at = [&](double ahead, double to_right) {
-          return Point2{line[i].x + ahead * d.x + to_right * d.y, line[i].y + ahead * d.y - to_right * d.x};
-        };
-        if (marking == CrossingMarking::zebra) {
-          for (double side = left + kStripe; side < right - kStripe / 2; side += 2 * kStripe)
-            paint(at(0, side), d, kZebraLength, kStripe, faces);
-        } else {
-          // Two broken lines across, dashes of a length with their gaps.
-          for (const double ahead : {-kZebraLength / 2, kZebraLength / 2})
-            for (double side = left + kStripe; side < right - kStripe / 2; side += 2 * kStripe)
-              paint(at(ahead, side), d, kLine, kStripe, faces);
-        }
-      }
-      const auto is_free = [&](double s) {
-        return std::ranges::none_of(junctions, [&](double j) { return std::fabs(j - s) < kJunctionFree; }) &&
-               std::ranges::none_of(crossings, [&](double c) { return std::fabs(c - s) < kCrossingFree; });
-      };
-      for (int lane = 1; lane < lanes; ++lane) {
-        const double side = left + (right - left) * lane / lanes;
-        for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-          const double from = offset.along(i), to = offset.along(i + 1), length = to - from;
-          geometry::PlanBox own_box;
-          own_box.include(line[i]), own_box.include(line[i + 1]);
-          if (!(length > 0) || length > kMostMarked || !own_box.near(around_, 0)) continue;
-          const Point2 d{(line[i + 1].x - line[i].x) / length, (line[i + 1].y - line[i].y) / length};
-          // Dashes lie where they lie along the whole line, whatever its points.
-          for (double s = std::floor(from / kDashPeriod) * kDashPeriod + kDash / 2; s < to; s += kDashPeriod) {
-            if (s < from || !is_free(s)) continue;
-            const double own = std::min({kDash, 2 * (s - from), 2 * (to - s)});
-            if (own < 1) continue;
-            paint({line[i].x + (s - from) * d.x + side * d.y, line[i].y + (s - from) * d.y - side * d.x}, d, own, kLine,
-                  faces);
-          }
-        }
-      }
-    }
-    drop_empty();
-  }
-
   void bridge() {
     const auto lines = claims_.lines_of(thing_);
     for (const std::vector<Point2>& mapped : lines) {
@@ -549,6 +344,7 @@ class Bodies {
     drop_empty();
   }
 
+  const BodySite& site_;
   const SurroundingInputs& in_;
   const ClaimFinder& claims_;
   const Thing& thing_;
@@ -563,11 +359,8 @@ class Bodies {
 
 }  // namespace
 
-std::vector<SurroundingBody> line_bodies(const SurroundingInputs& in, const ClaimFinder& claims, const Thing& thing,
-                                         const std::function<bool(Point2)>& is_own, const geometry::PlanBox& around,
-                                         const GroundAtPlace& ground,
-                                         const std::function<double(Point2)>& terrain_height) {
-  return Bodies(in, claims, thing, is_own, around, ground, terrain_height).make();
+std::vector<SurroundingBody> line_bodies(const BodySite& site, const Thing& thing) {
+  return Bodies(site, thing).make();
 }
 
 }  // namespace blockrand::surroundings

@@ -10,6 +10,9 @@
 #include "pipeline/surroundings/ground_surfaces.h"
 #include "pipeline/surroundings/line_bodies.h"
 #include "pipeline/surroundings/placing.h"
+#include "pipeline/surroundings/portal_bodies.h"
+#include "pipeline/surroundings/water_level.h"
+#include "pipeline/surroundings/wire_bodies.h"
 
 namespace blockrand::surroundings {
 namespace {
@@ -52,6 +55,7 @@ bool is_asked(SurroundingKind kind, const SurroundingOptions& layers) {
     case cliff:
       return layers.bodies;
     case power:
+      return layers.objects || layers.bodies;
     case wind_turbine:
     case mast:
     case tree:
@@ -165,7 +169,8 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
   const std::set<SquareIndex> own(squares.begin(), squares.end());
   const auto is_own = [&](Point2 p) { return own.contains(square_of(p)); };
 
-  const GroundClaims claims = claims_.claims_in(with_margin(box));
+  GroundClaims claims = claims_.claims_in(with_margin(box));
+  set_levels(claims);
   const geometry::BoxIndex claim_boxes([&] {
     std::vector<PlanBox> boxes;
     for (const geometry::AreaClaim& claim : claims.claims) {
@@ -237,7 +242,11 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
     if (of_square.claims.empty()) continue;
     std::vector<SquareSurface> surfaces = ground_surfaces(square, ground, of_square, land);
     const auto is_mapped = [&](const SquareSurface& s) { return s.label < claims.labels.size(); };
-    if (std::ranges::none_of(surfaces, is_mapped)) continue;
+    // Squares into which nothing mapped comes are left out; the land around a building is not.
+    const bool has_building = std::ranges::any_of(of_square.claims, [&](const geometry::AreaClaim& claim) {
+      return claims.labels[claim.label].building && claim.box.near(box_of(square), 0);
+    });
+    if (!has_building && std::ranges::none_of(surfaces, is_mapped)) continue;
     for (const SquareSurface& s : surfaces)
       if (is_mapped(s) && layers_.ground) with_ground.insert(claims.labels[s.label].object);
     if (layers_.objects)
@@ -253,19 +262,30 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
     return (known != grounds.end() ? known->second : grounds.try_emplace(square, square, height_, level_).first->second)
         .at(p);
   };
+  const auto found_at = [&](Point2 p, const geometry::AreaClaim& claim, const GroundLabel& label, GroundAt& found) {
+    if (!geometry::claim_holds(claim, p)) return false;
+    found.building = label.building;
+    found.ground = label.ground;
+    found.height = label.level.value_or(found.height) + static_cast<double>(label.offset);
+    return true;
+  };
   const GroundAtPlace ground_at = [&](Point2 p) {
     PlanBox at;
     at.include(p);
     GroundAt found{false, model::GroundClass::land, height_at(p)};
-    for (const std::uint32_t c : claim_boxes.near(at, 0)) {  // the strongest first
-      const geometry::AreaClaim& claim = claims.claims[c];
-      if (!geometry::claim_holds(claim, p)) continue;
-      const GroundLabel& label = claims.labels[claim.label];
-      found.building = label.building;
-      found.ground = label.ground;
-      found.height += static_cast<double>(label.offset);
-      break;
-    }
+    for (const std::uint32_t c : claim_boxes.near(at, 0))  // the strongest first
+      if (found_at(p, claims.claims[c], claims.labels[claims.claims[c].label], found)) break;
+    return found;
+  };
+  // Anywhere: claims are found anew, which is slow.
+  const GroundAtPlace ground_anywhere = [&](Point2 p) {
+    PlanBox at;
+    at.include(p);
+    GroundAt found{false, model::GroundClass::land, height_at(p)};
+    GroundClaims there = claims_.claims_in(at);
+    set_levels(there);
+    for (const geometry::AreaClaim& claim : there.claims)
+      if (found_at(p, claim, there.labels[claim.label], found)) break;
     return found;
   };
   // Of the squares of a run's ends alone: a run leads far beyond the tile.
@@ -275,7 +295,16 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
     if (const auto thing = thing_of.find(object.object.object); thing != thing_of.end())
       kinds[object.object.object] = claims_.things()[thing->second].kind;
     SurroundingState& state = states.try_emplace(object.object.object, SurroundingState::not_modelled).first->second;
-    object.place = beside_traffic(object.place, in_.catalogue.shown().shapes[object.object.shape].kind, ground_at);
+    // What holds wires stands where its line has it, and looks along it.
+    const bool has_line =
+        object.object.object.type == model::OsmType::node && !in_.catalogue.wires_of(object.object.shape).empty();
+    const std::optional<double> along =
+        has_line ? wire_direction(in_, claims_, object.object.object.number) : std::nullopt;
+    if (along) {
+      object.object.turn = static_cast<float>(*along);
+    } else {
+      object.place = beside_traffic(object.place, in_.catalogue.shown().shapes[object.object.shape].kind, ground_at);
+    }
     const GroundAt ground = ground_at(object.place);
     if (ground.building) {
       if (state == SurroundingState::not_modelled) state = SurroundingState::covered;
@@ -285,15 +314,23 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
     state = SurroundingState::modelled;
     out.objects.push_back(object.object);
   }
-  if (layers_.bodies)
+  if (layers_.bodies) {
+    const std::function<bool(Point2)> has_place = is_own;
+    const BodySite site{.in = in_,
+                        .claims = claims_,
+                        .is_own = has_place,
+                        .around = box,
+                        .ground = ground_at,
+                        .terrain_height = run_height};
     for (const std::uint32_t t : near) {
       const Thing& thing = claims_.things()[t];
-      if (thing.hidden) continue;
       const model::OsmId id = in_.extract.features[thing.feature].id;
-      std::vector<model::SurroundingBody> bodies = line_bodies(in_, claims_, thing, is_own, box, ground_at, run_height);
+      std::vector<model::SurroundingBody> bodies = thing.hidden ? portal_bodies(site, thing) : line_bodies(site, thing);
+      if (auto wires = wire_bodies(site, thing, ground_anywhere)) bodies.push_back(std::move(*wires));
       if (!bodies.empty()) states[id] = SurroundingState::modelled, kinds[id] = thing.kind;
       for (model::SurroundingBody& body : bodies) out.bodies.push_back(std::move(body));
     }
+  }
   const bool has_sea = std::ranges::any_of(out.surfaces, [](const model::GroundSurface& s) {
     return s.ground == model::GroundClass::water && s.object.number == 0;
   });
@@ -319,6 +356,17 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
   return out;
 }
 
+void SurroundingsFinder::set_levels(GroundClaims& claims) const {
+  if (!height_) return;
+  for (GroundLabel& label : claims.labels) {
+    const bool water = label.ground == model::GroundClass::water || label.ground == model::GroundClass::swimming_pool;
+    if (label.building || !water || label.object.number == 0) continue;
+    const Thing* thing = claims_.thing_of(label.object);
+    if (thing == nullptr) continue;
+    label.level = bank_level(claims_, *thing, in_.extract.features[thing->feature].area, height_);
+  }
+}
+
 void SurroundingsFinder::pack(model::TileId tile, base::Packer& out) const {
   const std::vector<SquareIndex> squares = squares_of(tile);
   if (squares.empty()) return;
@@ -332,6 +380,7 @@ void SurroundingsFinder::pack(model::TileId tile, base::Packer& out) const {
     for (const model::MappedRing& ring : e.rings_of(feature.rings))
       for (const model::Location at : e.vertices_of(ring)) out << at.lon << at.lat;
   }
+  for (const std::uint32_t t : claims_.things_near(box, 0)) pack_wires(in_, claims_, claims_.things()[t], box, out);
   // Bridges look along their runs, and at the ground at its ends.
   for (const std::uint32_t t : claims_.things_near(box, 0)) {
     const Thing& thing = claims_.things()[t];

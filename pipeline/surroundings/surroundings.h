@@ -23,7 +23,7 @@ class SurroundingsFinder {
 
   /// Everything in the squares whose middles lie in the tile. Depends on what lies within kSurroundingsReach of these squares,
   /// and on blocks and ways that come there as a whole; not on the tile.
-  /// Squares into which nothing comes are left out.
+  /// Squares into which nothing mapped comes, no building either, are left out.
   model::Surroundings around(model::TileId tile) const;
 
   /// All that `around` reads of the map, so that a tile for which it is another counts as changed.
@@ -34,6 +34,8 @@ class SurroundingsFinder {
 
  private:
   std::vector<SquareIndex> squares_of(model::TileId tile) const;
+  /// GroundLabel::level of still water.
+  void set_levels(GroundClaims& claims) const;
 
   SurroundingInputs in_;
   SurroundingOptions layers_;

@@ -126,6 +126,11 @@ TEST(SurroundingCatalogue, TellsObjectsByTheFirstRowThatFits) {
   EXPECT_EQ(object({{"historic", "memorial"}, {"memorial", "stolperstein"}})->kind, "");
   EXPECT_EQ(object({{"historic", "memorial"}, {"memorial", "bust"}})->kind, "statue");
   EXPECT_EQ(object({{"traffic_sign", "DE:274"}})->kind, "traffic_sign");
+  EXPECT_EQ(object({{"playground", "slide"}})->kind, "playground_slide");
+  EXPECT_EQ(object({{"playground", "swing"}}, true)->kind, "playground_swing");
+  EXPECT_EQ(object({{"playground", "sandpit"}})->kind, "playground_sandpit");
+  EXPECT_EQ(object({{"playground", "sandpit"}}, true)->kind, "") << "it has ground of its own";
+  EXPECT_EQ(object({{"playground", "map"}})->kind, "");
   EXPECT_EQ(object({{"traffic_sign", "no"}}), nullptr);
   EXPECT_EQ(object({{"amenity", "restaurant"}}), nullptr);
   EXPECT_EQ(object({{"natural", "tree"}}, true), nullptr);
@@ -147,6 +152,22 @@ TEST(SurroundingCatalogue, EveryKindOfARuleHasAShapeAndEveryShapeARule) {
   EXPECT_GT(rules, 80U);
   for (const ObjectShape& shape : shipped().shown().shapes) EXPECT_TRUE(asked.contains(shape.kind)) << shape.kind;
   EXPECT_TRUE(shipped().shapes_of("unicorn").empty());
+}
+
+// Wires hang on the shape, on both sides alike: their line may come from either side.
+TEST(SurroundingShapes, HoldWiresWhereTheyReach) {
+  for (const char* kind : {"power_pole", "power_tower", "power_portal", "aerialway_pylon"})
+    for (const std::uint16_t s : shipped().shapes_of(kind)) {
+      const ObjectShape& shape = shipped().shown().shapes[s];
+      const auto& wires = shipped().wires_of(s);
+      EXPECT_FALSE(wires.empty()) << shape.name;
+      for (const auto& [across, up] : wires) {
+        EXPECT_LE(std::fabs(across), shape.max.y + 0.01) << shape.name;
+        EXPECT_LE(up, shape.max.z + 0.4) << shape.name;
+        EXPECT_NE(std::find(wires.begin(), wires.end(), std::pair(-across, up)), wires.end()) << shape.name;
+      }
+    }
+  EXPECT_TRUE(shipped().wires_of(shipped().shapes_of("bench").front()).empty());
 }
 
 TEST(SurroundingShapes, StandOnTheGroundWithoutFlatTriangles) {
@@ -177,7 +198,7 @@ TEST(SurroundingShapes, StandOnTheGroundWithoutFlatTriangles) {
     EXPECT_EQ(shape.max, max);
     EXPECT_LE(min.z, 0.1);
     EXPECT_GE(min.z, -0.15);
-    EXPECT_GT(max.z, 0.4);
+    EXPECT_GT(max.z, 0.25);  // the frame of a sandpit
     EXPECT_TRUE(min.x < 0 && max.x > 0 && min.y < 0 && max.y > 0) << "the foot is not within";
   }
 }
