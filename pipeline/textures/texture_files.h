@@ -1,0 +1,13 @@
+// Pictures as WebP files; PNG files are those of pipeline/picture.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace blockrand::textures {
+
+/// RGB pixels as WebP (RFC 9649), with loss, or without it. \param quality  0 to 100; above 100: without loss
+/// \throws std::runtime_error  the encoder gave up
+std::string webp(std::span<const std::uint8_t> rgb, int pixels, int quality);
+}  // namespace blockrand::textures
