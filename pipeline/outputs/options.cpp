@@ -61,6 +61,9 @@ const base::Choices<Compression> kCompressions = {
 
 const base::Choices<CityGmlDetail> kDetails = {{"lean", CityGmlDetail::lean}, {"full", CityGmlDetail::full}};
 
+const base::Choices<TextureChoice> kTextures = {
+    {"none", TextureChoice::none}, {"small", TextureChoice::small}, {"shared", TextureChoice::shared}};
+
 // Places in the record: build.json keeps the order of its first versions.
 
 base::OptionTable<O> which_files() {
@@ -121,6 +124,21 @@ base::OptionTable<O> which_files() {
 
 base::OptionTable<O> what_files_hold() {
   return {
+      custom<O>(
+          {.name = "textures",
+           .key = "textures",
+           .argument = "WHICH",
+           .help = "what surfaces in GLBs look like from near by: none is their plain colour; shared lays textures of "
+                   "plaster, brick, tiles, asphalt and the like on them, in textures/ for all tiles; small has "
+                   "half the pixels on each side (docs/textures.md)",
+           .choices = {"none", "small", "shared"},
+           .record = OptionRecord::yes},
+          [](O& o, const std::string& text) { o.textures = base::choose(text, kTextures); },
+          [](const O& o) { return base::word_of(kTextures, o.textures); },
+          [](const O& o) {
+            return o.textures == TextureChoice::none ? std::nullopt
+                                                     : std::optional(RecordValue(base::word_of(kTextures, o.textures)));
+          }),
       choice({.name = "attributes",
               .key = "attributes",
               .argument = "WHICH",
@@ -217,6 +235,7 @@ std::vector<std::string> unread_options(const OutputOptions& o, int lod) {
       {"evidence", o.evidence, glb || citygml || cityjson, "gltf, citygml and cityjson"},
       {"attributes", o.profile != usual.profile, glb, "gltf"},
       {"compress", o.compression != usual.compression, glb, "gltf"},
+      {"textures", o.textures != usual.textures, glb, "gltf"},
       {"instancing", o.instancing != usual.instancing, glb && facades, "gltf, of level 3"},
       {"max-glb-bytes", o.max_glb_bytes != usual.max_glb_bytes, gltf, "gltf"},
       {"citygml-detail", o.citygml_detail != usual.citygml_detail, citygml && facades, "citygml, of level 3"},

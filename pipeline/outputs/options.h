@@ -23,11 +23,19 @@ enum class CityGmlDetail : std::uint8_t {
   full,  ///< reveals, and every element with all its faces
 };
 
+/// What surfaces look like from near by.
+enum class TextureChoice : std::uint8_t {
+  none,    ///< of one colour
+  small,   ///< textures of half as many pixels on each side
+  shared,  ///< textures, shared by all tiles
+};
+
 struct OutputOptions {
   std::vector<std::string> formats = format_names();    ///< in the order of format_names
   Instancing instancing = Instancing::ext;              ///< how GLBs hold what stands in facades
   Compression compression = Compression::tiles;         ///< of vertices, indices and places in GLBs
   AttributeProfile profile = AttributeProfile::people;  ///< what GLBs tell of a building
+  TextureChoice textures = TextureChoice::none;         ///< of surfaces in GLBs
   std::int64_t max_glb_bytes = 10'000'000;              ///< of a tile's GLB: a larger one is cut; 0: none is
   CityGmlDetail citygml_detail = CityGmlDetail::lean;   ///< of LoD3
   bool imagery = false;                                 ///< there are aerial images: imagery.json. Set by the build

@@ -33,6 +33,7 @@
 #include "pipeline/outputs/options.h"
 #include "pipeline/outputs/output_size.h"
 #include "pipeline/outputs/statistics.h"
+#include "pipeline/textures/texture_catalogue.h"
 
 namespace blockrand::outputs {
 
@@ -60,6 +61,7 @@ struct OutputContext {
   std::function<std::string(std::string_view preset)> rule_file;  ///< as ExplainOptions has it; may be empty
   /// What model::Surroundings of tiles number. Null: none are made.
   const model::SurroundingCatalogue* surroundings = nullptr;
+  const textures::TextureCatalogue* textures = nullptr;  ///< null: surfaces are plain
   int workers = 1;
   const base::Memo* memo = nullptr;  ///< where an earlier run left pictures; null: nothing is remembered
 };

@@ -421,6 +421,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
       .earlier = account.earlier(),
       .rule_file = [&](std::string_view preset) { return inputs.rule_file(preset); },
       .surroundings = inputs.surroundings ? &inputs.surroundings->shown() : nullptr,
+      .textures = inputs.textures ? &*inputs.textures : nullptr,
       .workers = workers,
       .memo = memo ? &*memo : nullptr};
   const OpenOutputs open(output_context);

@@ -40,6 +40,8 @@ InputFile input_file(std::string role, const std::string& path) {
   return f;
 }
 
+constexpr const char* kTexturesFile = "materials/textures.toml";
+
 }  // namespace
 
 BuildInputs::BuildInputs(const BuildOptions& options)
@@ -56,6 +58,8 @@ BuildInputs::BuildInputs(const BuildOptions& options)
     grammars.emplace(
         facades::read_grammars(options.configs, rules.book.presets, importers::reference::read_triangle_model));
   if (options.surroundings.any()) surroundings.emplace(options.configs + "/surroundings.toml");
+  if (options.outputs.textures != outputs::TextureChoice::none)
+    textures = textures::TextureCatalogue::read(options.configs + "/" + kTexturesFile);
   overrides = open_overrides(options.overrides, defaults, rules.book);
   if (options.lod >= 2) landmarks = read_landmarks(overrides);
 }
@@ -87,6 +91,7 @@ std::vector<InputFile> input_files(const BuildOptions& options, const BuildInput
       configs.emplace_back((file.parent_path().filename() / file.filename()).generic_string(), path);
     }
   if (inputs.surroundings) configs.emplace_back("surroundings.toml", options.configs + "/surroundings.toml");
+  if (inputs.textures) configs.emplace_back(kTexturesFile, options.configs + "/" + kTexturesFile);
   for (const auto& [name, path] : configs) {
     files.push_back(input_file("config", path));
     files.back().path = name;

@@ -18,6 +18,7 @@
 #include "pipeline/run/options.h"
 #include "pipeline/run/tile_choice.h"
 #include "pipeline/surroundings/catalogue.h"
+#include "pipeline/textures/texture_catalogue.h"
 #include "styles/classify/classify.h"
 
 namespace blockrand::run {
@@ -37,6 +38,7 @@ struct BuildInputs {
   std::optional<facades::GrammarLibrary> grammars;  ///< of LoD3
   attributes::Overrides overrides;
   std::optional<surroundings::Catalogue> surroundings;  ///< where they are asked for
+  std::optional<textures::TextureCatalogue> textures;   ///< where they are asked for
   std::vector<ReadLandmark> landmarks;  ///< models that overrides put in the place of buildings; from LoD2 on
 
   /// The rule file of a preset; empty for one without, or where facades were not asked for.

@@ -13,7 +13,8 @@ import unittest
 from blockrand_run import SAMPLE, SOURCE, BuildTest, Setup, call, files_of, main, read_json, sha256
 
 INSTALLED = ['bin/blockrand', 'share/bash-completion/completions/blockrand', 'share/blockrand/configs/defaults/uses.toml',
-             'share/blockrand/configs/materials/materials.toml', 'share/blockrand/configs/surroundings.toml', 'share/doc/blockrand/CHANGELOG.md',
+             'share/blockrand/configs/materials/materials.toml', 'share/blockrand/configs/materials/textures.toml',
+             'share/blockrand/configs/surroundings.toml', 'share/doc/blockrand/CHANGELOG.md',
              'share/doc/blockrand/LICENSE', 'share/doc/blockrand/LICENSE.DejaVu', 'share/doc/blockrand/LICENSES.viewer',
              'share/doc/blockrand/README.md',
              'share/doc/blockrand/examples/blockrand-viertel.osm', 'share/fish/vendor_completions.d/blockrand.fish',

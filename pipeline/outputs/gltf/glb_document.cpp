@@ -3,6 +3,7 @@
 #include <bit>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/outputs/gltf/meshopt.h"
@@ -38,6 +39,7 @@ StreamInfo info_of(Stream stream) {
       return {4, true, MeshoptCoding::attributes};
     case Stream::colours:
     case Stream::element_positions:
+    case Stream::texture_repeats:
       return {8, true, MeshoptCoding::attributes};
     case Stream::indices:
       return {2, false, MeshoptCoding::triangles};
@@ -153,7 +155,24 @@ int GlbDocument::add_texture(std::string png) {
   std::string json = "{";
   field(json, "bufferView", static_cast<std::size_t>(add_view(std::move(png))));
   images_.push_back(json + ",\"mimeType\":\"image/png\"}");
-  return static_cast<int>(images_.size()) - 1;
+  textures_.push_back({.repeated = false, .extensions = {}, .image = images_.size() - 1});
+  return static_cast<int>(textures_.size()) - 1;
+}
+int GlbDocument::add_repeated_texture(const std::string& webp, const std::string& png) {
+  const auto [place, added] = repeated_textures_.try_emplace(webp, static_cast<int>(textures_.size()));
+  if (!added) return place->second;
+  for (const auto& [path, type] : {std::pair(&png, "image/png"), std::pair(&webp, "image/webp")}) {
+    std::string image = "{\"mimeType\":\"";
+    image += type;
+    image += "\",\"uri\":";
+    append_json(image, *path);
+    images_.push_back(image + '}');
+  }
+  std::string extensions = "\"extensions\":{\"EXT_texture_webp\":{";
+  field(extensions, "source", images_.size() - 1);
+  textures_.push_back({.repeated = true, .extensions = extensions + "}},", .image = images_.size() - 2});
+  use("EXT_texture_webp", false);
+  return place->second;
 }
 int GlbDocument::add_mesh(std::string json) {
   meshes_.push_back(std::move(json));
@@ -251,16 +270,23 @@ std::string GlbDocument::write(Compression compression) {
   append_list(json, "meshes", meshes_);
   append_list(json, "materials", materials_);
   append_list(json, "images", images_);
-  if (!images_.empty()) {
-    std::vector<std::string> textures;
-    for (std::size_t i = 0; i < images_.size(); ++i) {
-      textures.emplace_back("{\"sampler\":0,");
-      textures.back() += "\"source\":";
-      append_number(textures.back(), static_cast<std::int64_t>(i));
-      textures.back() += '}';
-    }
+  if (!textures_.empty()) {
+    const std::size_t looked_up = textures_.size() - repeated_textures_.size();
+    std::vector<std::string> samplers, textures;
     // Nearest pixel, not beyond the edge.
-    append_list(json, "samplers", {"{\"magFilter\":9728,\"minFilter\":9728,\"wrapS\":33071,\"wrapT\":33071}"});
+    if (looked_up > 0) samplers.emplace_back("{\"magFilter\":9728,\"minFilter\":9728,\"wrapS\":33071,\"wrapT\":33071}");
+    // Mixed and repeated; from afar the mean.
+    if (!repeated_textures_.empty())
+      samplers.emplace_back("{\"magFilter\":9729,\"minFilter\":9987,\"wrapS\":10497,\"wrapT\":10497}");
+    for (const Texture& texture : textures_) {
+      std::string& text = textures.emplace_back("{" + texture.extensions);
+      text += "\"sampler\":";
+      append_number(text, std::int64_t{texture.repeated && looked_up > 0 ? 1 : 0});
+      text += ",\"source\":";
+      append_number(text, static_cast<std::int64_t>(texture.image));
+      text += '}';
+    }
+    append_list(json, "samplers", samplers);
     append_list(json, "textures", textures);
   }
   append_list(json, "accessors", accessors_);

@@ -27,6 +27,7 @@ enum class Stream : std::uint8_t {
   normals,                 ///< 3 signed bytes and an empty one
   colours,                 ///< 4 words
   texture_places,          ///< 2 words
+  texture_repeats,         ///< 2 floats
   features,                ///< a word and an empty one
   wide_features,           ///< a float
   indices,                 ///< a word
@@ -89,6 +90,9 @@ class GlbDocument {
   int add_material(const std::string& json);
   /// A picture whose pixels are looked up, never mixed.
   int add_texture(std::string png);
+  /// Pictures in files of their own, mixed between pixels and repeated: WebP (EXT_texture_webp), and PNG for readers without
+  /// it. Equal ones are one.
+  int add_repeated_texture(const std::string& webp, const std::string& png);
   int add_mesh(std::string json);
   int add_node(std::string json);
   /// A node that the scene holds. Without any there is no scene: an empty one is not allowed.
@@ -114,6 +118,13 @@ class GlbDocument {
   std::map<Stream, std::size_t> expected_;
   std::map<Stream, int> view_numbers_;
   std::map<std::string, int> material_numbers_;
+  struct Texture {
+    bool repeated = false;  ///< by the other sampler
+    std::string extensions;
+    std::size_t image = 0;
+  };
+  std::vector<Texture> textures_;
+  std::map<std::string, int> repeated_textures_;  ///< by their WebP
   std::vector<std::string> accessors_, materials_, meshes_, nodes_, images_;
   std::vector<int> roots_;
   std::map<std::string, bool> used_;

@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <vector>
 
 #include "pipeline/outputs/gltf/building_table.h"
 #include "pipeline/outputs/gltf/document_head.h"
@@ -18,6 +20,7 @@
 #include "pipeline/outputs/gltf/mesh_writer.h"
 #include "pipeline/outputs/gltf/piece_writer.h"
 #include "pipeline/outputs/gltf/property_table.h"
+#include "pipeline/outputs/gltf/surface_textures.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -59,6 +62,25 @@ void add_box(Glb& glb, bool first, const model::Point3& min, const model::Point3
       first ? max : model::Point3{std::max(glb.max.x, max.x), std::max(glb.max.y, max.y), std::max(glb.max.z, max.z)};
 }
 
+/// The textures of a GLB, where it has some.
+class Texturing {
+ public:
+  Texturing(const model::Region& region, const GlbOptions& options) {
+    if (!options.textures) return;
+    outlines_ = course_outlines(region, options.frame);
+    textures_.emplace(*options.textures, SurfaceTextures::Of::buildings, region.materials, outlines_,
+                      options.texture_folder);
+  }
+  SurfaceTextures* textures() { return textures_ ? &*textures_ : nullptr; }
+  void note(Glb& glb) const {
+    if (textures_) glb.textures = textures_->used(), glb.too_light = textures_->too_light();
+  }
+
+ private:
+  std::vector<CourseOutline> outlines_;
+  std::optional<SurfaceTextures> textures_;
+};
+
 /// All houses as one mesh, and the elements as they are to be placed.
 void write_batch(GlbDocument& document, const model::Region& region, const GlbOptions& options, std::size_t rows,
                  Glb& glb) {
@@ -76,7 +98,9 @@ void write_batch(GlbDocument& document, const model::Region& region, const GlbOp
       material = document.add_material(materials.material_json(document.add_texture(materials.png())));
     if (mesh.empty()) return false;
     add_box(glb, true, mesh.min, mesh.max);
-    glb.triangles = write_mesh(document, mesh, rows, kBuildingClass, material, materials);
+    Texturing texturing(region, options);
+    glb.triangles = write_mesh(document, mesh, rows, kBuildingClass, material, materials, texturing.textures());
+    texturing.note(glb);
     document.use("EXT_mesh_features", false);
     document.use("KHR_mesh_quantization", true);
     return true;
@@ -105,7 +129,10 @@ Glb write_glb(const model::Region& region, const GlbOptions& options) {
   glb.rows = table.rows();
   if (table.rows() > 0) {
     if (options.objects == Objects::building) {
-      const ObjectFigures objects = write_objects(document, region, options.lod, options.frame, options.instancing);
+      Texturing texturing(region, options);
+      const ObjectFigures objects =
+          write_objects(document, region, options.lod, options.frame, options.instancing, texturing.textures());
+      texturing.note(glb);
       glb.buildings = objects.buildings;
       glb.parts = objects.parts;
       glb.triangles = objects.triangles;

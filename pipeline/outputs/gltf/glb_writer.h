@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <set>
 #include <string>
 
 #include "pipeline/model/region.h"
@@ -10,6 +11,7 @@
 #include "pipeline/outputs/gltf/compression.h"
 #include "pipeline/outputs/gltf/instance_writer.h"
 #include "pipeline/outputs/gltf/object_writer.h"
+#include "pipeline/outputs/gltf/texture_set.h"
 
 namespace blockrand::outputs {
 
@@ -25,6 +27,8 @@ struct GlbOptions {
   Compression compression = Compression::none;
   AttributeProfile profile = AttributeProfile::all;  ///< what the property table tells of a building
   bool evidence = false;                             ///< also why each attribute has its value
+  const TextureSet* textures = nullptr;              ///< null: surfaces are plain
+  std::string texture_folder;                        ///< from the file to the pictures: "../../../textures/"
 };
 
 struct Glb {
@@ -33,6 +37,8 @@ struct Glb {
   std::size_t triangles = 0;  ///< as drawn; 0: the file is valid, but shows nothing; a tileset should leave it out
   std::size_t elements = 0, placements = 0;  ///< distinct elements and their places, where they are not baked
   std::size_t buildings = 0, parts = 0;      ///< nodes of objects; 0 without such
+  std::set<std::string> textures;            ///< names of those that it shows
+  std::size_t too_light = 0;                 ///< triangles that stay plain: their colour is lighter than their texture
   model::Point3 min, max;                    ///< of the mesh in east, north, up; zero without triangles
 };
 
@@ -45,6 +51,8 @@ struct Glb {
 /// property table. Extensions: KHR_mesh_quantization (required), EXT_mesh_features,
 /// EXT_structural_metadata. Elements of LoD3 as GlbOptions::instancing says (piece_writer.h, instance_writer.h), with
 /// EXT_mesh_gpu_instancing (required) and EXT_instance_features; with compression EXT_meshopt_compression (required).
+/// With textures, faces of a material that has one are primitives of their own: TEXCOORD_0 counts repeats (KHR_texture_transform),
+/// and COLOR_0 is divided by the texture's mean. Nothing else differs.
 /// `asset.extras.georeference` says where on the Earth the mesh stands.
 ///
 /// The same region gives the same bytes. A region without parts gives a valid file with an empty scene.

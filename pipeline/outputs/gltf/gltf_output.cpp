@@ -9,6 +9,8 @@
 #include <map>
 #include <mutex>
 #include <numeric>
+#include <optional>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -23,6 +25,7 @@
 #include "pipeline/georef/tiles.h"
 #include "pipeline/outputs/gltf/glb_writer.h"
 #include "pipeline/outputs/gltf/surroundings_glb.h"
+#include "pipeline/outputs/gltf/texture_set.h"
 #include "pipeline/outputs/tileset/tileset.h"
 
 namespace blockrand::outputs {
@@ -78,11 +81,18 @@ GlbOptions glb_options(const OutputContext& context, const georef::EnuFrame& fra
   return o;
 }
 
+/// Notes the textures of a GLB with its tile.
+void note_textures(const Glb& glb, TileEntry& entry) {
+  entry.textures.insert(glb.textures.begin(), glb.textures.end());
+  entry.too_light += glb.too_light;
+}
+
 /// What viewers show from farther away than facades: roofs (tileset.h says from how far).
 void write_coarser_level(const Glb& glb, const std::string& place, TileEntry& entry, const OutputContext& context,
                          std::vector<base::PublishedFile>& files) {
   if (glb.triangles == 0) return;
   entry.coarser.push_back({place + "_lod2.glb", kRoofError});
+  note_textures(glb, entry);
   write_served(entry.coarser.back().uri, glb.bytes, context.options, context.folder, files);
   entry.min = {std::min(entry.min.x, glb.min.x), std::min(entry.min.y, glb.min.y), std::min(entry.min.z, glb.min.z)};
   entry.max = {std::max(entry.max.x, glb.max.x), std::max(entry.max.y, glb.max.y), std::max(entry.max.z, glb.max.z)};
@@ -95,6 +105,7 @@ void write_surroundings_tile(const FinishedTile& tile, const std::string& place,
   const Glb glb = write_surroundings_glb(*tile.surroundings, *context.surroundings, options);
   if (glb.triangles == 0) return;
   entry.surroundings = {place + "_surroundings.glb", glb.min, glb.max};
+  note_textures(glb, entry);
   write_served(entry.surroundings->uri, glb.bytes, context.options, context.folder, files);
   const auto widen = [&](Point3& low, Point3& high) {
     low = {std::min(low.x, glb.min.x), std::min(low.y, glb.min.y), std::min(low.z, glb.min.z)};
@@ -200,6 +211,7 @@ class PieceWriter {
     const Point3 middle{(entry_.min.x + entry_.max.x) / 2, (entry_.min.y + entry_.max.y) / 2,
                         (entry_.min.z + entry_.max.z) / 2};
     const bool shown = glb.triangles > 0;
+    note_textures(glb, entry_);
     entry_.pieces.push_back({place_ + name + ".glb", shown ? glb.min : middle, shown ? glb.max : middle});
     write_served(entry_.pieces.back().uri, glb.bytes, context_.options, context_.folder, tile_.files);
   }
@@ -213,7 +225,7 @@ class PieceWriter {
 };
 
 /// Writes a tile's GLBs. \returns its entry in the tileset; none where its GLB would show nothing
-std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& context) {
+std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& context, const TextureSet* textures) {
   const model::Region& region = tile.region;
   const model::TileId id = region.tile;
   const GeoidPlane plane = geoid_plane(context, georef::centre(id));
@@ -222,6 +234,8 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
   const double origin_height = model::snap(ground + plane.at);
   const georef::TileFrame frame(context.projection, id, origin_height);
   GlbOptions options = glb_options(context, frame.frame());
+  options.textures = textures;
+  options.texture_folder = "../../../" + std::string(kTextureFolder);  // from tiles/LEVEL/X/
   options.frame.to_enu = [&](std::span<const Point3> in, std::span<Point3> out) {
     for (std::size_t i = 0; i < in.size(); ++i)
       out[i] = frame.to_local({in[i].x, in[i].y, in[i].z + plane(in[i].x, in[i].y)});
@@ -233,6 +247,7 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
     } else {
       GlbOptions coarser = options;
       coarser.lod = 2;
+      coarser.textures = nullptr;  // seen from afar
       roofs = write_glb(region, coarser);
     }
   });
@@ -251,6 +266,7 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
     PieceWriter(tile, options, place, most, entry, context).write();
     entry.uri.clear();
   } else {
+    note_textures(glb, entry);
     write_served(entry.uri, glb.bytes, context.options, context.folder, tile.files);
   }
   entry.enu_to_ecef = options.frame.enu_to_ecef;
@@ -262,13 +278,17 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
 }
 
 /// Writes model.glb, and surroundings.glb in the same frame. \param around  empty: none
-void write_model(const FinishedBuild& build, const model::Surroundings& around, const OutputContext& context) {
+/// \param used  gets the textures that they show
+void write_model(const FinishedBuild& build, const model::Surroundings& around, const OutputContext& context,
+                 const TextureSet* textures, std::set<std::string>& used) {
   const model::Region& whole = build.whole;
   const double origin_height = model::snap(lowest_ground(whole));
   const GeoidPlane plane = geoid_plane(context, context.centre);
   const georef::EnuFrame frame({context.centre.lon, context.centre.lat, origin_height + plane.at});
   GlbOptions o = glb_options(context, frame);
   o.objects = context.options.objects;
+  o.textures = textures;
+  o.texture_folder = kTextureFolder;
   if (context.options.compression == Compression::tiles) o.compression = Compression::none;
   // One frame for a whole city: every point takes the exact way, and the geoid is asked for each.
   o.frame.to_enu = [&](std::span<const Point3> in, std::span<Point3> out) {
@@ -283,6 +303,7 @@ void write_model(const FinishedBuild& build, const model::Surroundings& around, 
     GlbOptions baked = o;  // editors know no instances
     baked.instancing = Instancing::baked;
     const Glb ground = write_surroundings_glb(around, *context.surroundings, baked);
+    used.insert(ground.textures.begin(), ground.textures.end());
     build.tell(kSurroundingsFile, fmt::format("{} triangles, {}", base::with_thousands(ground.triangles),
                                               base::with_byte_unit(ground.bytes.size())));
     build.files.push_back(context.folder.write(kSurroundingsFile, ground.bytes));
@@ -295,6 +316,7 @@ void write_model(const FinishedBuild& build, const model::Surroundings& around, 
         fmt::format("{} would have more than the 4 GB that a GLB may have; {}use tileset.json, or a --bbox", kModelFile,
                     o.objects == Objects::building && o.lod >= 3 ? "--objects tile is a tenth of it; or " : ""));
   }
+  used.insert(glb.textures.begin(), glb.textures.end());
   const auto [bytes, triangles] = std::pair(glb.bytes.size(), base::with_thousands(glb.triangles));
   std::string figures = fmt::format("{} triangles, {}", triangles, base::with_byte_unit(bytes));
   if (o.objects == Objects::building)
@@ -314,14 +336,20 @@ void write_model(const FinishedBuild& build, const model::Surroundings& around, 
 
 class GltfOutput : public OutputOf<std::optional<TileEntry>> {
  public:
-  explicit GltfOutput(const OutputContext& context) : context_(context), tiled_(context.options.writes("gltf")) {}
+  explicit GltfOutput(const OutputContext& context) : context_(context), tiled_(context.options.writes("gltf")) {
+    if (context.textures != nullptr)
+      textures_.emplace(*context.textures, context.options.textures == TextureChoice::small
+                                               ? textures::TextureSize::small
+                                               : textures::TextureSize::full);
+  }
 
   std::any write_tile(FinishedTile& tile) const override {
     if (context_.options.single_glb && tile.surroundings != nullptr && !tile.surroundings->empty()) {
       const std::lock_guard lock(mutex_);
       around_[tile.region.tile] = *tile.surroundings;
     }
-    return tiled_ && (tile.has_parts || tile.surroundings != nullptr) ? write_glbs(tile, context_) : std::nullopt;
+    return tiled_ && (tile.has_parts || tile.surroundings != nullptr) ? write_glbs(tile, context_, textures())
+                                                                      : std::nullopt;
   }
   void take(const FinishedTile&, std::any product) override {
     if (auto& entry = *std::any_cast<std::optional<TileEntry>>(&product)) tiles_.push_back(std::move(*entry));
@@ -335,7 +363,27 @@ class GltfOutput : public OutputOf<std::optional<TileEntry>> {
       options.attribution = attribution(context_);
       write_served("tileset.json", write_tileset(tiles_, options), context_.options, context_.folder, build.files);
     }
-    if (!context_.options.single_glb) return;
+    std::set<std::string> used;
+    std::uint64_t too_light = 0;
+    for (const TileEntry& entry : tiles_) {
+      used.insert(entry.textures.begin(), entry.textures.end());
+      too_light += entry.too_light;
+    }
+    if (context_.options.single_glb) write_whole(build, used);
+    if (!textures_) return;
+    const auto [webp, png] = textures_->write(used, context_.folder, build.files);
+    std::string figures = fmt::format("{} textures, {} as WebP, {} as PNG", used.size(), base::with_byte_unit(webp),
+                                      base::with_byte_unit(png));
+    if (too_light > 0)
+      figures +=
+          fmt::format("; {} triangles are lighter than their texture and stay plain", base::with_thousands(too_light));
+    build.tell(kTextureFolder, std::move(figures));
+  }
+
+ private:
+  const TextureSet* textures() const { return textures_ ? &*textures_ : nullptr; }
+
+  void write_whole(const FinishedBuild& build, std::set<std::string>& used) {
     model::Surroundings around;
     for (auto& [tile, of_tile] : around_) {
       std::ranges::move(of_tile.surfaces, std::back_inserter(around.surfaces));
@@ -343,11 +391,11 @@ class GltfOutput : public OutputOf<std::optional<TileEntry>> {
       std::ranges::move(of_tile.objects, std::back_inserter(around.objects));
     }
     around_.clear();
-    write_model(build, around, context_);
+    write_model(build, around, context_, textures(), used);
   }
 
- private:
   const OutputContext& context_;
+  std::optional<TextureSet> textures_;
   bool tiled_ = true;
   std::vector<TileEntry> tiles_;
   mutable std::mutex mutex_;
@@ -364,6 +412,8 @@ OutputFormat gltf_output() {
                       [](const OutputOptions& o, std::uint64_t) { return o.writes("gltf"); }},
                      {kModelFile, "the whole build in one file, for Blender and other editors",
                       [](const OutputOptions& o, std::uint64_t) { return o.single_glb; }},
+                     {kTextureFolder, "what surfaces of GLBs look like from near by",
+                      [](const OutputOptions& o, std::uint64_t) { return o.textures != TextureChoice::none; }},
                      {kSurroundingsFile, "what stands around the houses, in the frame of model.glb",
                       [](const OutputOptions& o, std::uint64_t) { return o.single_glb && o.surroundings; }}},
           .manual = {{"tileset.json, tiles/",

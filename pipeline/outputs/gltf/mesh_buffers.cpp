@@ -346,6 +346,7 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool b
   Bodies bodies = collect_bodies(region, lod, frame, bake);
   Mesh mesh;
   mesh.positions = std::move(bodies.local);
+  mesh.solid_positions = mesh.positions.size();
   Primitives primitives(Primitives::By::all);
   {
     SolidWriter writer(bodies.source);
@@ -386,6 +387,7 @@ void for_each_part_mesh(const model::Region& region, int lod, const Frame& frame
       const std::uint32_t first = ref->first_position;
       const std::size_t last = end == bodies.solids.end() ? bodies.local.size() : end->first_position;
       mesh.positions.assign(bodies.local.begin() + first, bodies.local.begin() + static_cast<std::ptrdiff_t>(last));
+      mesh.solid_positions = mesh.positions.size();
       for (; ref != end; ++ref) writer.add(*ref, first, mesh, primitives);
     }
     ElementGeometry geometry;

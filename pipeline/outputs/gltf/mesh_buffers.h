@@ -30,12 +30,18 @@ struct MeshPrimitive {
   model::PartMaterial look;            ///< of all faces, where they have one
   std::vector<MeshVertex> vertices;    ///< at most kMostVertices
   std::vector<std::uint16_t> indices;  ///< counter-clockwise triangles seen from outside
+
+  int texture = -1;                           ///< of SurfaceTextures; -1: none
+  float reach = 1;                            ///< repeats that a stored texture coordinate of 1 stands for
+  std::vector<std::array<float, 2>> repeats;  ///< parallel to vertices where there is a texture: right, down
 };
 
 struct Mesh {
   std::vector<model::Point3> positions;   ///< east, north, up in metres
   std::vector<MeshPrimitive> primitives;  ///< none is empty
   std::vector<MeshPrimitive> pieces;      ///< of elements, apart from solids
+  std::size_t solid_positions = 0;        ///< how many positions, the first ones, are those of solids
+  std::vector<model::Point2> plan;        ///< of the positions in the build CRS; empty where no ground is textured
   model::Point3 min, max;                 ///< of the positions
   std::size_t triangles = 0;
   bool empty() const { return primitives.empty() && pieces.empty(); }

@@ -26,8 +26,8 @@ constexpr double kColumn = kTileStepsPerMetre / 100;
 class MeshWriter {
  public:
   /// Takes primitives out of `mesh` as it writes them.
-  MeshWriter(GlbDocument& document, Mesh& mesh, std::size_t features, std::string_view label)
-      : document_(document), mesh_(mesh), label_(label), wide_features_(features > 0xFFFF) {
+  MeshWriter(GlbDocument& document, Mesh& mesh, std::size_t features, std::string_view label, SurfaceTextures* textures)
+      : document_(document), mesh_(mesh), label_(label), textures_(textures), wide_features_(features > 0xFFFF) {
     far_ = std::max({std::fabs(mesh.min.x), std::fabs(mesh.min.y), std::fabs(mesh.min.z), std::fabs(mesh.max.x),
                      std::fabs(mesh.max.y), std::fabs(mesh.max.z)}) > kFinestReach;
   }
@@ -41,6 +41,14 @@ class MeshWriter {
     for (const Stream stream : {Stream::colours, Stream::normals, far_ ? Stream::far_positions : Stream::tile_positions,
                                 Stream::texture_places, wide_features_ ? Stream::wide_features : Stream::features})
       document_.expect(stream, vertices);
+    if (textures_) {
+      std::vector<MeshPrimitive> parts;
+      for (MeshPrimitive& all : mesh_.primitives) {
+        for (MeshPrimitive& part : textures_->split(all, mesh_)) add_to(parts, std::move(part));
+        all = {};
+      }
+      mesh_.primitives = std::move(parts);
+    }
     return write(mesh_.primitives, "", material, table, Order::along_faces) +
            write(mesh_.pieces, kPiecesName, material, table, Order::vertex_cache);
   }
@@ -60,15 +68,16 @@ class MeshWriter {
       triangles += p.indices.size() / 3;
       if (json.back() == '}') json += ',';
       json += "{\"attributes\":{";
+      const bool textured = p.texture >= 0;
       attribute(json, "COLOR_0", add_colours(p));
       attribute(json, "NORMAL", add_normals(p));
       attribute(json, "POSITION", add_positions(p, round));
-      attribute(json, "TEXCOORD_0", add_classes(p, table));
+      attribute(json, "TEXCOORD_0", textured ? add_repeats(p) : add_classes(p, table));
       attribute(json, "_FEATURE_ID_0", add_features(p));
       json += "},\"extensions\":{\"EXT_mesh_features\":" + feature_ids(p) + "},\"indices\":";
       append_number(json, std::int64_t{add_indices(p)});
       json += ",\"material\":";
-      append_number(json, std::int64_t{material});
+      append_number(json, std::int64_t{textured ? textures_->material(document_, p) : material});
       json += '}';
     }
     if (triangles == 0) return 0;
@@ -81,6 +90,23 @@ class MeshWriter {
     }
     document_.add_root(document_.add_node(json + '}'));
     return triangles;
+  }
+
+  /// Puts a primitive behind the last one of its texture that has room for it.
+  static void add_to(std::vector<MeshPrimitive>& parts, MeshPrimitive&& part) {
+    if (part.indices.empty()) return;
+    const auto same = std::find_if(parts.rbegin(), parts.rend(), [&](const MeshPrimitive& other) {
+      return other.texture == part.texture && other.reach == part.reach &&
+             (part.texture < 0 || other.look.material == part.look.material);
+    });
+    if (same == parts.rend() || same->vertices.size() + part.vertices.size() > MeshPrimitive::kMostVertices) {
+      parts.push_back(std::move(part));
+      return;
+    }
+    const std::size_t first = same->vertices.size();
+    same->vertices.insert(same->vertices.end(), part.vertices.begin(), part.vertices.end());
+    same->repeats.insert(same->repeats.end(), part.repeats.begin(), part.repeats.end());
+    for (const std::uint16_t i : part.indices) same->indices.push_back(static_cast<std::uint16_t>(first + i));
   }
 
   static void attribute(std::string& json, const char* name, int accessor) {
@@ -136,6 +162,7 @@ class MeshWriter {
       corners.push_back({{whole(enu.x), whole(enu.y), whole(enu.z)}, v.normal});
     }
     MeshPrimitive out;
+    out.look = p.look, out.texture = p.texture, out.reach = p.reach;
     for (std::size_t t = 0; t + 2 < p.indices.size(); t += 3) {
       // Pieces of elements do not have to close; a solid would be open without it, and keeps floats.
       if (!far_ && order == Order::vertex_cache && is_flat(corners, p.indices, t)) continue;
@@ -147,8 +174,12 @@ class MeshWriter {
                                                    : packing_order(out.indices, p.vertices.size());
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       if (numbers[i] == ~0u) continue;
-      if (numbers[i] >= out.vertices.size()) out.vertices.resize(numbers[i] + 1);
+      if (numbers[i] >= out.vertices.size()) {
+        out.vertices.resize(numbers[i] + 1);
+        if (p.texture >= 0) out.repeats.resize(numbers[i] + 1);
+      }
       out.vertices[numbers[i]] = p.vertices[i];
+      if (p.texture >= 0) out.repeats[numbers[i]] = p.repeats[i];
     }
     return out;
   }
@@ -187,9 +218,14 @@ class MeshWriter {
   int add_colours(const MeshPrimitive& p) {
     std::vector<std::uint16_t> values;
     values.reserve(4 * p.vertices.size());
+    // A texture is multiplied with them, and is as light as its mean.
+    const std::array<double, 3> mean = p.texture >= 0 ? textures_->mean(p) : std::array<double, 3>{1, 1, 1};
+    const auto tint = [&](std::uint8_t part, std::size_t k) {
+      return static_cast<std::uint16_t>(std::min(65535.0, std::nearbyint(kLinearLight[part] / mean[k])));
+    };
     for (const MeshVertex& v : p.vertices) {
       const model::Colour& c = v.look.colour;
-      values.insert(values.end(), {kLinearLight[c.r], kLinearLight[c.g], kLinearLight[c.b], std::uint16_t{65535}});
+      values.insert(values.end(), {tint(c.r, 0), tint(c.g, 1), tint(c.b, 2), std::uint16_t{65535}});
     }
     return add<std::uint16_t>(Stream::colours, values, Component::uint16, "VEC4", p, true);
   }
@@ -201,6 +237,17 @@ class MeshWriter {
       const std::array<std::uint16_t, 2> place = table.place(v.look.material);
       values.insert(values.end(), place.begin(), place.end());
     }
+    return add<std::uint16_t>(Stream::texture_places, values, Component::uint16, "VEC2", p, true);
+  }
+
+  int add_repeats(const MeshPrimitive& p) {
+    std::vector<std::uint16_t> values;
+    values.reserve(2 * p.vertices.size());
+    for (const std::array<float, 2>& at : p.repeats)
+      for (const float repeats : at) {
+        const double share = static_cast<double>(repeats) / static_cast<double>(p.reach);
+        values.push_back(static_cast<std::uint16_t>(std::lround(std::clamp(share, 0.0, 1.0) * 65535)));
+      }
     return add<std::uint16_t>(Stream::texture_places, values, Component::uint16, "VEC2", p, true);
   }
 
@@ -254,14 +301,15 @@ class MeshWriter {
   GlbDocument& document_;
   Mesh& mesh_;
   std::string_view label_;
+  SurfaceTextures* textures_;  ///< null: none
   bool wide_features_, far_ = false;
 };
 
 }  // namespace
 
 std::size_t write_mesh(GlbDocument& document, Mesh& mesh, std::size_t features, std::string_view label, int material,
-                       const MaterialTable& table) {
-  return MeshWriter(document, mesh, features, label).write(material, table);
+                       const MaterialTable& table, SurfaceTextures* textures) {
+  return MeshWriter(document, mesh, features, label, textures).write(material, table);
 }
 
 }  // namespace blockrand::outputs

@@ -7,6 +7,7 @@
 #include "pipeline/outputs/gltf/glb_document.h"
 #include "pipeline/outputs/gltf/material.h"
 #include "pipeline/outputs/gltf/mesh_buffers.h"
+#include "pipeline/outputs/gltf/surface_textures.h"
 
 namespace blockrand::outputs {
 
@@ -15,8 +16,9 @@ namespace blockrand::outputs {
 /// \param features  rows of the property table
 /// \param label     class of the features
 /// \param material  for which `table` tells where classes are
+/// \param textures  lays them on the primitives; null: all is plain
 /// \return how many triangles it wrote
 std::size_t write_mesh(GlbDocument& document, Mesh& mesh, std::size_t features, std::string_view label, int material,
-                       const MaterialTable& table);
+                       const MaterialTable& table, SurfaceTextures* textures = nullptr);
 
 }  // namespace blockrand::outputs

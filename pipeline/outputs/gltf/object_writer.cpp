@@ -58,8 +58,12 @@ struct OpenPart {
 
 class ObjectWriter {
  public:
-  ObjectWriter(GlbDocument& document, const model::Region& region)
-      : document_(document), region_(region), tags_(region.extract), stored_(document, ElementVertices::floats) {}
+  ObjectWriter(GlbDocument& document, const model::Region& region, SurfaceTextures* textures)
+      : document_(document),
+        region_(region),
+        tags_(region.extract),
+        stored_(document, ElementVertices::floats),
+        textures_(textures) {}
 
   ObjectFigures write(int lod, const Frame& frame, Instancing how) {
     const bool nodes = how == Instancing::nodes && lod >= 3;
@@ -73,6 +77,13 @@ class ObjectWriter {
     std::size_t next = 0;
     for_each_part_mesh(region_, lod, frame, !nodes, [&](std::uint32_t feature, Mesh mesh) {
       const auto& [building, part] = rows.at(feature);
+      if (textures_) {
+        std::vector<MeshPrimitive> parts;
+        for (const MeshPrimitive& all : mesh.primitives)
+          for (MeshPrimitive& faces : textures_->split(all, mesh))
+            if (!faces.indices.empty()) parts.push_back(std::move(faces));
+        mesh.primitives = std::move(parts);
+      }
       const std::size_t first = next;
       while (next < elements.size() && elements[next].at->feature == feature) ++next;
       if (!mesh.empty() || next > first)
@@ -179,6 +190,10 @@ class ObjectWriter {
       if (!primitives.empty()) primitives += ',';
       primitives += "{\"attributes\":{\"POSITION\":";
       append_number(primitives, std::int64_t{add_positions(p, corners, reach > kFinestReach)});
+      if (p.texture >= 0) {
+        primitives += ",\"TEXCOORD_0\":";
+        append_number(primitives, std::int64_t{add_repeats(p)});
+      }
       primitives += "},\"indices\":";
       const std::size_t at = document_.append<std::uint16_t>(Stream::indices, indices);
       append_number(primitives, std::int64_t{document_.add_accessor({.stream = Stream::indices,
@@ -187,14 +202,29 @@ class ObjectWriter {
                                                                      .type = "SCALAR",
                                                                      .count = indices.size()})});
       primitives += ",\"material\":";
-      append_number(primitives, std::int64_t{document_.add_material(material_json(
-                                    region_.materials.at(p.look.material), p.look.colour, MaterialName::with_colour))});
+      append_number(primitives, std::int64_t{material_of(p)});
       primitives += '}';
     }
     if (primitives.empty()) return -1;
     std::string json = "{\"name\":";
     append_json(json, open.part->id);
     return document_.add_mesh(json + ",\"primitives\":[" + primitives + "]}");
+  }
+
+  int material_of(const MeshPrimitive& p) {
+    if (p.texture >= 0) return textures_->material(document_, p, p.look.colour);
+    return document_.add_material(
+        material_json(region_.materials.at(p.look.material), p.look.colour, MaterialName::with_colour));
+  }
+
+  int add_repeats(const MeshPrimitive& p) {
+    const std::size_t at =
+        document_.append<std::array<float, 2>>(Stream::texture_repeats, std::span(p.repeats.data(), p.repeats.size()));
+    return document_.add_accessor({.stream = Stream::texture_repeats,
+                                   .offset = at,
+                                   .component = Component::float32,
+                                   .type = "VEC2",
+                                   .count = p.vertices.size()});
   }
 
   /// The triangles that have an area on the grid: slivers of elements may have lost theirs when they were turned.
@@ -260,6 +290,7 @@ class ObjectWriter {
   const model::Region& region_;
   TagReader tags_;
   StoredElements stored_;
+  SurfaceTextures* textures_;               ///< null: none
   std::map<std::vector<int>, int> meshes_;  ///< of elements, by StoredElements::mesh_key
   std::vector<OpenPart> open_;              ///< of the building that comes in
   ObjectFigures figures_;
@@ -269,8 +300,8 @@ class ObjectWriter {
 }  // namespace
 
 ObjectFigures write_objects(GlbDocument& document, const model::Region& region, int lod, const Frame& frame,
-                            Instancing elements) {
-  return ObjectWriter(document, region).write(lod, frame, elements);
+                            Instancing elements, SurfaceTextures* textures) {
+  return ObjectWriter(document, region, textures).write(lod, frame, elements);
 }
 
 }  // namespace blockrand::outputs

@@ -7,6 +7,7 @@
 #include "pipeline/model/region.h"
 #include "pipeline/outputs/frame.h"
 #include "pipeline/outputs/gltf/instance_writer.h"
+#include "pipeline/outputs/gltf/surface_textures.h"
 
 namespace blockrand::outputs {
 
@@ -39,7 +40,9 @@ struct ObjectFigures {
 /// \param lod  0 to 3, as build_mesh() takes it
 /// \param elements  `nodes`: elements are meshes that places share, children of their parts' nodes with `feature` in
 ///                  `extras`; otherwise they are triangles of the parts' meshes
+/// \param textures  lays them on faces: texture coordinates are floats then, and the base colour factor is divided by the texture's
+///                  mean; null: all is plain
 ObjectFigures write_objects(GlbDocument& document, const model::Region& region, int lod, const Frame& frame,
-                            Instancing elements);
+                            Instancing elements, SurfaceTextures* textures = nullptr);
 
 }  // namespace blockrand::outputs

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -119,8 +121,12 @@ class MeshMaker {
     }
   }
 
-  Mesh take() {
+  /// \param with_plan  for textures of the ground
+  Mesh take(bool with_plan) {
     Mesh mesh;
+    mesh.solid_positions = points_.size();
+    if (with_plan)
+      for (const Point3& p : points_) mesh.plan.push_back(p.xy());
     mesh.positions.resize(points_.size());
     if (frame_.to_enu) {
       frame_.to_enu(points_, mesh.positions);
@@ -447,12 +453,18 @@ Glb write_surroundings_glb(const model::Surroundings& surroundings, const model:
     std::vector<model::MaterialClass> classes;
     for (const auto& m : catalogue.materials) classes.push_back({m.name, m.roughness, m.metallic});
     const MaterialTable materials(classes);
-    Mesh mesh = maker.take();
+    Mesh mesh = maker.take(options.textures != nullptr);
     const int material = document.add_material(materials.material_json(document.add_texture(materials.png())));
     bool first = true;
     if (!mesh.empty()) {
       glb.min = mesh.min, glb.max = mesh.max, first = false;
-      glb.triangles = write_mesh(document, mesh, rows.size(), kSurroundingClass, material, materials);
+      std::optional<SurfaceTextures> textures;
+      if (options.textures)
+        textures.emplace(*options.textures, SurfaceTextures::Of::ground, classes, std::span<const CourseOutline>(),
+                         options.texture_folder);
+      glb.triangles = write_mesh(document, mesh, rows.size(), kSurroundingClass, material, materials,
+                                 textures ? &*textures : nullptr);
+      if (textures) glb.textures = textures->used(), glb.too_light = textures->too_light();
       document.use("EXT_mesh_features", false);
       document.use("KHR_mesh_quantization", true);
     }

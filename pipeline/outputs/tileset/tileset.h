@@ -40,6 +40,8 @@ struct TileEntry {
   model::Point3 min, max;                           ///< of all levels: m east, north, up of the tile's origin
   double west = 0, south = 0, east = 0, north = 0;  ///< degrees; west > east where the mesh crosses 180°
   double min_height = 0, max_height = 0;            ///< m above the ellipsoid
+  std::set<std::string> textures;                   ///< names of those that its files show
+  std::uint64_t too_light = 0;                      ///< triangles that stay plain: lighter than their texture
 };
 
 struct TilesetOptions {
