@@ -88,6 +88,7 @@ namespace blockrand::model {
   X(kRailway, "railway", "a railway and its kind")                                                                \
   X(kService, "service", "of a railway: a siding, which bounds no block")                                         \
   X(kWaterway, "waterway", "water")                                                                               \
+  X(kWater, "water", "river, canal, stream: not level")                                                           \
   X(kNatural, "natural", "trees, water, coastline, land use")                                                     \
   X(kLanduse, "landuse", "land use; quarters of rules")                                                           \
   X(kLeisure, "leisure", "land use")                                                                              \
@@ -123,12 +124,15 @@ namespace blockrand::model {
   X(kPower, "power", "power lines, poles, towers, generators")                                                    \
   X(kGeneratorSource, "generator:source", "wind: a wind turbine")                                                 \
   X(kAeroway, "aeroway", "runways, taxiways, aprons")                                                             \
-  X(kAerialway, "aerialway", "cable ways: told, not modelled")                                                    \
+  X(kAerialway, "aerialway", "cable ways and their pylons: wires")                                                \
   X(kAdvertising, "advertising", "advertising columns and boards")                                                \
   X(kEmergency, "emergency", "hydrants")                                                                          \
   X(kTrafficSign, "traffic_sign", "a sign")                                                                       \
+  X(kTrafficSignalsDirection, "traffic_signals:direction", "which direction stops")                               \
+  X(kStepCount, "step_count", "how many treads steps have")                                                       \
+  X(kIncline, "incline", "where steps rise")                                                                      \
   X(kPublicTransport, "public_transport", "platforms and stops")                                                  \
-  X(kPlayground, "playground", "play equipment: told, not modelled")                                              \
+  X(kPlayground, "playground", "play equipment")                                                                  \
   X(kGolf, "golf", "greens, tees, bunkers, fairways")                                                             \
   X(kLeafType, "leaf_type", "needleleaved, broadleaved")                                                          \
   X(kLeafCycle, "leaf_cycle", "evergreen, deciduous")                                                             \

@@ -73,7 +73,7 @@ class Stairs {
   }
 
  private:
-  double step_count() const { return number_of(tag_("step_count")).value_or(0); }
+  double step_count() const { return number_of(tag_(model::osm_key::kStepCount)).value_or(0); }
 
   bool is_at_building(Point2 p) const {
     constexpr double kDiagonal = 0.70710678118654752;
@@ -93,7 +93,7 @@ class Stairs {
 
   /// On level ground: whether the end of the way is its upper one.
   bool leads_up(const OffsetLine& line) const {
-    const std::string_view incline = tag_("incline");
+    const std::string_view incline = tag_(model::osm_key::kIncline);
     if (incline == "up" || incline == "down") return incline == "up";
     if (const auto told = number_of(incline); told && *told != 0) return *told > 0;
     return is_at_building(line.points().back());
@@ -105,7 +105,8 @@ class Stairs {
     if (length > kMostLevelLength) return {};
     double count = std::round(step_count());
     if (!(count > 0))
-      if (const auto told = number_of(tag_("incline"))) count = std::round(std::fabs(*told) / 100 * length / kRise);
+      if (const auto told = number_of(tag_(model::osm_key::kIncline)))
+        count = std::round(std::fabs(*told) / 100 * length / kRise);
     if (!(count >= 1) || count * kRise > kSteepest * length) return {};
     if (!is_at_building(line.points().back()) || is_at_building(line.points().front())) return {};
     low_ = site_.terrain_height(line.points().front()), rise_ = kRise;

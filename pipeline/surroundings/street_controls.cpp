@@ -30,7 +30,7 @@ StreetControl control_of(const TagOf& tag) {
   } else {
     return out;
   }
-  std::string_view told = tag("traffic_signals:direction");
+  std::string_view told = tag(osm_key::kTrafficSignalsDirection);
   if (told.empty()) told = tag(osm_key::kDirection);
   out.forward = told == "forward" || told == "both";
   out.backward = told == "backward" || told == "both";

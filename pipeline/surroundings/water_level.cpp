@@ -28,7 +28,7 @@ bool is_still_water(const TagOf& tag) {
   if (!waterway.empty()) return waterway == "dock";
   constexpr std::array<std::string_view, 8> kFlowing{"river", "canal",     "stream", "ditch",
                                                      "drain", "fish_pass", "rapids", "wastewater"};
-  return std::ranges::find(kFlowing, tag("water")) == kFlowing.end();
+  return std::ranges::find(kFlowing, tag(osm_key::kWater)) == kFlowing.end();
 }
 
 std::optional<double> bank_level(const ClaimFinder& claims, const Thing& thing, bool area, const HeightAt& terrain) {

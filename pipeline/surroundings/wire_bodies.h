@@ -24,7 +24,7 @@ std::optional<double> wire_direction(const SurroundingInputs& in, const ClaimFin
 std::optional<model::SurroundingBody> wire_bodies(const BodySite& site, const Thing& thing,
                                                   const GroundAtPlace& anywhere);
 
-/// All that wire_bodies reads of the map beyond kSurroundingsReach of a box. \param anywhere  as above
+/// All that wire_bodies reads of the map beyond kSurroundingsReach of a box.
 void pack_wires(const SurroundingInputs& in, const ClaimFinder& claims, const Thing& thing,
                 const geometry::PlanBox& around, base::Packer& out);
 
