@@ -357,8 +357,12 @@ class Reader {
       return rule(where + ": its indices are no unsigned numbers");
     if (indices->count % 3 != 0) rule(fmt::format("{}: {} indices make no triangles", where, indices->count));
     std::array<std::uint8_t, 3> one{};
-    for (std::size_t i = 0; factor && i < 3; ++i) one[i] = srgb((*factor)[i]);
-    read_triangles({*position, normal, colour, feature, *indices, one, row}, matrix, where, placed);
+    // Colours of textured faces are divided by the mean of their texture.
+    const auto told = numbers(member(member(material, "extras"), "texture_mean"), 3);
+    std::array<double, 3> mean{1, 1, 1};
+    for (std::size_t i = 0; told && i < 3; ++i) mean[i] = (*told)[i];
+    for (std::size_t i = 0; factor && i < 3; ++i) one[i] = srgb((*factor)[i] * mean[i]);
+    read_triangles({*position, normal, colour, feature, *indices, one, row, mean}, matrix, where, placed);
   }
 
   bool required(const char* extension) const {
@@ -407,6 +411,7 @@ class Reader {
     const Accessor& indices;
     std::array<std::uint8_t, 3> one_colour;  ///< where vertices have none
     std::optional<std::size_t> row;          ///< of all triangles, where vertices do not say
+    std::array<double, 3> mean;              ///< of the texture, in linear light
   };
 
   void read_triangles(const Streams& s, const Matrix& matrix, const std::string& where, GlbElement* placed) {
@@ -470,7 +475,10 @@ class Reader {
                                            glb_.value(*s.colour, corner[0], 2)};
         auto found = known_colours.find(linear);
         if (found == known_colours.end())
-          found = known_colours.emplace(linear, std::array{srgb(linear[0]), srgb(linear[1]), srgb(linear[2])}).first;
+          found = known_colours
+                      .emplace(linear, std::array{srgb(linear[0] * s.mean[0]), srgb(linear[1] * s.mean[1]),
+                                                  srgb(linear[2] * s.mean[2])})
+                      .first;
         triangle.colour = found->second;
       }
       if (placed) {

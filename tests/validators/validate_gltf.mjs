@@ -3,6 +3,7 @@
 // One line per error or warning, one summary line at the end; exit 1 on any error, 2 when there is nothing to check.
 import { createRequire } from 'node:module';
 import { readFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
 import { files_below } from './glb.mjs';
 
 // Resolved from the working directory as well, so that node_modules may live outside the source tree.
@@ -33,7 +34,12 @@ const total = { errors: 0, warnings: 0 };
 for (const file of files) {
   let report;
   try {
-    report = await validator.validateBytes(new Uint8Array(readFileSync(file)), { uri: file, ignoredIssues, maxIssues: 50 });
+    report = await validator.validateBytes(new Uint8Array(readFileSync(file)), {
+      uri: file,
+      ignoredIssues,
+      maxIssues: 50,
+      externalResourceFunction: async (uri) => new Uint8Array(readFileSync(join(dirname(file), decodeURIComponent(uri)))),
+    });
   } catch (error) {
     console.log(`${file}: error: ${error}`);
     ++total.errors;

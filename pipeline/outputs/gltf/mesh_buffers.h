@@ -31,9 +31,10 @@ struct MeshPrimitive {
   std::vector<MeshVertex> vertices;    ///< at most kMostVertices
   std::vector<std::uint16_t> indices;  ///< counter-clockwise triangles seen from outside
 
-  int texture = -1;                           ///< of SurfaceTextures; -1: none
-  float reach = 1;                            ///< repeats that a stored texture coordinate of 1 stands for
-  std::vector<std::array<float, 2>> repeats;  ///< parallel to vertices where there is a texture: right, down
+  int texture = -1;                                  ///< of SurfaceTextures; -1: none
+  float reach = 1;                                   ///< repeats that a stored texture coordinate of 1 stands for
+  std::vector<std::array<float, 2>> repeats;         ///< parallel to vertices where there is a texture: right, down
+  std::vector<std::array<std::int8_t, 3>> tangents;  ///< the same: where repeats go right; east, north, up in 1/127
 };
 
 struct Mesh {

@@ -72,6 +72,7 @@ class MeshWriter {
       attribute(json, "COLOR_0", add_colours(p));
       attribute(json, "NORMAL", add_normals(p));
       attribute(json, "POSITION", add_positions(p, round));
+      if (textured) attribute(json, "TANGENT", add_tangents(p));
       attribute(json, "TEXCOORD_0", textured ? add_repeats(p) : add_classes(p, table));
       attribute(json, "_FEATURE_ID_0", add_features(p));
       json += "},\"extensions\":{\"EXT_mesh_features\":" + feature_ids(p) + "},\"indices\":";
@@ -106,6 +107,7 @@ class MeshWriter {
     const std::size_t first = same->vertices.size();
     same->vertices.insert(same->vertices.end(), part.vertices.begin(), part.vertices.end());
     same->repeats.insert(same->repeats.end(), part.repeats.begin(), part.repeats.end());
+    same->tangents.insert(same->tangents.end(), part.tangents.begin(), part.tangents.end());
     for (const std::uint16_t i : part.indices) same->indices.push_back(static_cast<std::uint16_t>(first + i));
   }
 
@@ -176,10 +178,10 @@ class MeshWriter {
       if (numbers[i] == ~0u) continue;
       if (numbers[i] >= out.vertices.size()) {
         out.vertices.resize(numbers[i] + 1);
-        if (p.texture >= 0) out.repeats.resize(numbers[i] + 1);
+        if (p.texture >= 0) out.repeats.resize(numbers[i] + 1), out.tangents.resize(numbers[i] + 1);
       }
       out.vertices[numbers[i]] = p.vertices[i];
-      if (p.texture >= 0) out.repeats[numbers[i]] = p.repeats[i];
+      if (p.texture >= 0) out.repeats[numbers[i]] = p.repeats[i], out.tangents[numbers[i]] = p.tangents[i];
     }
     return out;
   }
@@ -238,6 +240,16 @@ class MeshWriter {
       values.insert(values.end(), place.begin(), place.end());
     }
     return add<std::uint16_t>(Stream::texture_places, values, Component::uint16, "VEC2", p, true);
+  }
+
+  int add_tangents(const MeshPrimitive& p) {
+    std::vector<std::int8_t> values;
+    values.reserve(4 * p.vertices.size());
+    for (const std::array<std::int8_t, 3>& t : p.tangents) {
+      const std::array<std::int8_t, 3> tangent = y_up(t[0], t[1], t[2]);
+      values.insert(values.end(), {tangent[0], tangent[1], tangent[2], std::int8_t{127}});  // pictures are not mirrored
+    }
+    return add<std::int8_t>(Stream::normals, values, Component::int8, "VEC4", p, true);
   }
 
   int add_repeats(const MeshPrimitive& p) {

@@ -31,10 +31,17 @@ constexpr double kBeside = 3;
 constexpr double kReach = 64, kFarReach = 640;
 /// Whole repeats by which ground is counted from the origin of the CRS: neighbours mostly share their vertices then.
 constexpr double kGroundBlock = 8;
-/// A colour that the texture would have to brighten by more shows too dark by more than a person sees (2 of CIELAB's L*).
-constexpr double kMostGain = 1.03;
 
 double dot(const Point2& a, double x, double y) { return a.x * x + a.y * y; }
+
+/// In 1/127: a direction as it lies in a face.
+std::array<std::int8_t, 3> tangent_of(const Point3& along, const Point3& normal) {
+  const double off = model::dot(along, normal);
+  const Point3 t{along.x - off * normal.x, along.y - off * normal.y, along.z - off * normal.z};
+  const double length = model::length(t);
+  const auto byte = [&](double v) { return static_cast<std::int8_t>(std::lround(v / length * 127)); };
+  return {byte(t.x), byte(t.y), byte(t.z)};
+}
 
 /// Faces of a primitive: vertices that triangles join.
 std::vector<std::uint32_t> faces_of(const MeshPrimitive& p) {
@@ -191,13 +198,17 @@ std::vector<MeshPrimitive> SurfaceTextures::split(const MeshPrimitive& all, cons
     if (face.row < 0) continue;
     const model::Colour& c = vertex.look.colour;
     const std::array<double, 3>& mean = set_.mean(face.row);
-    if (kLinearLight[c.r] > kMostGain * 65535 * mean[0] || kLinearLight[c.g] > kMostGain * 65535 * mean[1] ||
-        kLinearLight[c.b] > kMostGain * 65535 * mean[2]) {
+    if (kLinearLight[c.r] > 65535 * mean[0] || kLinearLight[c.g] > 65535 * mean[1] ||
+        kLinearLight[c.b] > 65535 * mean[2]) {
       face.row = -1;
       too_light_ += face.triangles;
       continue;
     }
-    face.layout = layout_of(face.row, vertex, face.normal, position(v));
+    if (of_ == Of::ground) {
+      face.layout.right = {1, 0, 0};
+    } else {
+      face.layout = layout_of(face.row, vertex, face.normal, position(v));
+    }
     face.low = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     face.high = {-face.low[0], -face.low[1]};
   }
@@ -252,10 +263,12 @@ std::vector<MeshPrimitive> SurfaceTextures::split(const MeshPrimitive& all, cons
       number[v] = static_cast<std::uint32_t>(primitive.vertices.size());
       primitive.vertices.push_back(all.vertices[v]);
       // glTF counts from the top of a picture, whose lower border is the ground: one repeat above it is 0.
-      if (face.row >= 0)
+      if (face.row >= 0) {
         primitive.repeats.push_back(
             {static_cast<float>(repeats[v][0] - face.low[0]),
              static_cast<float>(std::ceil(face.high[1] - face.low[1]) - (repeats[v][1] - face.low[1]))});
+        primitive.tangents.push_back(tangent_of(face.layout.right, face.normal));
+      }
     }
     primitive.indices.push_back(static_cast<std::uint16_t>(number[v]));
   }

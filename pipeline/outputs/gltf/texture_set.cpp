@@ -74,12 +74,21 @@ int TextureSet::add_material(GlbDocument& document, int row, std::string_view ma
                              double scale, const std::optional<std::array<double, 3>>& tint) const {
   std::array<std::string, kPictures.size()> infos;
   for (std::size_t i = 0; i < kPictures.size(); ++i) {
+    if (i == 1 && tint) continue;
     const std::string path = folder + this->row(row).name + std::string(kPictures[i].ending);
     infos[i] = texture_info(document.add_repeated_texture(path + ".webp", path + ".png"), scale);
   }
-  std::string json = "{\"name\":";
+  // What colours must be multiplied with to be those of the data.
+  std::string json = "{\"extras\":{\"texture_mean\":[";
+  for (const double part : mean(row)) {
+    if (json.back() != '[') json += ',';
+    append_number(json, part);
+  }
+  json += "]},\"name\":";
   append_json(json, material);
-  json += ",\"normalTexture\":" + infos[1] + ",\"pbrMetallicRoughness\":{";
+  // Readers would have to make tangents for vertices without normals, each its own.
+  if (!tint) json += ",\"normalTexture\":" + infos[1];
+  json += ",\"pbrMetallicRoughness\":{";
   if (tint) {
     json += "\"baseColorFactor\":[";
     for (const double part : *tint) {
