@@ -93,6 +93,10 @@ std::string update_report(const run::UpdateOptions& options, const run::UpdateSu
         out += fmt::format("  refused: {} ({})\n", g.words, g.key);
   };
   switch (s.state) {
+    case run::UpdateState::shared:
+      out +=
+          fmt::format("run {} is planned: {} areas are to be built\n", s.number, base::with_thousands(s.planned_areas));
+      break;
     case run::UpdateState::unchanged:
       out += s.before ? fmt::format("nothing to build: build {} is up to date\n", s.number) : "nothing to build\n";
       break;
@@ -136,7 +140,7 @@ std::string update_report(const run::UpdateOptions& options, const run::UpdateSu
 }
 
 std::string update_json(const run::UpdateSummary& s) {
-  constexpr const char* kStates[] = {"published", "unchanged", "refused", "planned"};
+  constexpr const char* kStates[] = {"published", "unchanged", "refused", "planned", "shared"};
   nlohmann::ordered_json j = {{"state", kStates[static_cast<int>(s.state)]}, {"run", s.number}, {"folder", s.folder}};
   j["why"] = s.why;
   j["osm_objects"] = {{"created", s.created}, {"modified", s.modified}, {"deleted", s.deleted}, {"known", s.known}};
@@ -204,11 +208,7 @@ run::ReferenceVerdict compare_with_reference(const settings::Settings& s, const 
   return verdict;
 }
 
-/// \param line  of `update`, or of `region repair` with its extract
-int update(settings::CommandLine& line, std::string sha256) {
-  settings::Settings& s = line.settings;
-  clean_up_on_signals(s.log_format);
-  base::Progress progress(s.progress, s.log_format, s.quiet);
+run::UpdateOptions update_options(const settings::Settings& s, std::string sha256, base::Progress& progress) {
   run::UpdateOptions options;
   options.folder = run::RegionFolder(s.region).path();
   options.inputs = s.data;
@@ -219,9 +219,14 @@ int update(settings::CommandLine& line, std::string sha256) {
   options.dry_run = s.dry_run, options.break_lock = s.break_lock;
   options.version = base::kVersion;
   options.settings_sha256 = std::move(sha256);
-  options.compare_with_reference = [&](const std::string& build, const std::string& baseline) {
+  options.compare_with_reference = [&s, &progress](const std::string& build, const std::string& baseline) {
     return compare_with_reference(s, build, baseline, progress);
   };
+  return options;
+}
+
+/// The first run makes the region, with a region.toml to edit.
+void make_region(run::UpdateOptions& options, const settings::Settings& s) {
   const run::RegionFolder region(options.folder);
   std::error_code error;
   if (!std::filesystem::exists(region.settings(), error) && !s.dry_run) {
@@ -232,13 +237,26 @@ int update(settings::CommandLine& line, std::string sha256) {
     run::write_whole(region.settings(), settings::config_template(settings::kBuild | settings::kUpdate));
     options.settings_sha256 = base::sha256_file(region.settings());
   }
-  const run::UpdateSummary summary = run::update_region(options, progress);
-  progress.end();
+}
+
+int ended(const run::UpdateOptions& options, const run::UpdateSummary& summary, const settings::Settings& s) {
   if (s.log_format == base::LogFormat::json)
     std::fputs(update_json(summary).c_str(), stdout);
   else if (!s.quiet || summary.state == run::UpdateState::refused)
     std::fputs(update_report(options, summary).c_str(), stdout);
   return summary.state == run::UpdateState::refused ? kRefused : kSuccess;
+}
+
+/// \param line  of `update`, or of `region repair` with its extract
+int update(settings::CommandLine& line, std::string sha256) {
+  settings::Settings& s = line.settings;
+  clean_up_on_signals(s.log_format);
+  base::Progress progress(s.progress, s.log_format, s.quiet);
+  run::UpdateOptions options = update_options(s, std::move(sha256), progress);
+  make_region(options, s);
+  const run::UpdateSummary summary = run::update_region(options, progress);
+  progress.end();
+  return ended(options, summary, s);
 }
 
 }  // namespace
@@ -255,14 +273,22 @@ int run_update(const std::vector<std::string>& arguments) {
 
 settings::CommandText region_text() {
   return {.name = "region",
-          .summary = "repairs a region: its data from an extract, its kept work",
-          .usage = "repair REGION [EXTRACT] [options]",
+          .summary = "repairs a region; shares a night's work among processes and hosts",
+          .usage = "STEP REGION [DATA ...] [options]",
           .description =
-              "Reads the kept work and removes what is damaged, then the data of the published build. Where those are "
-              "damaged they are made anew from EXTRACT, or from the input of region.toml, and built. What is published "
-              "stays until the new build is.",
+              "repair: reads the kept work and removes what is damaged, then the data of the published build. Where "
+              "those are damaged they are made anew from the extract given, or from the input of region.toml, and "
+              "built. What is published stays until the new build is.\n"
+              "plan, work, finish: what update does, in three steps, for regions that are built in areas. plan takes "
+              "new data in and gives each area that is to be built to one of N shards, balanced by what it took in "
+              "earlier nights. work builds those of one shard: any number at once, on any host that sees the folder; "
+              "one that was killed is run again. finish gates and publishes. The result is that of update, byte by "
+              "byte. drop gives a plan up.",
           .options = settings::kRegion,
-          .examples = {{"blockrand region repair leipzig leipzig.osm.pbf", ""}},
+          .examples = {{"blockrand region repair leipzig leipzig.osm.pbf", ""},
+                       {"blockrand region plan saxony --shards 8", "as update would begin"},
+                       {"blockrand region work saxony --shard 3/8", "eight of them, anywhere"},
+                       {"blockrand region finish saxony", "when all are done"}},
           .exit_codes = {{"0", "all well"},
                          {"1", "wrong usage"},
                          {"2", "unreadable or invalid input"},
@@ -270,13 +296,9 @@ settings::CommandText region_text() {
                          {"5", "built, but refused by a gate of the region"}}};
 }
 
-int run_region(const std::vector<std::string>& arguments) {
-  std::string sha256;
-  settings::CommandLine line = region_line(settings::kRegion, arguments, sha256);
-  if (line.help) {
-    std::fputs(settings::command_help(region_text()).c_str(), stdout);
-    return kSuccess;
-  }
+namespace {
+
+int repair(settings::CommandLine& line, std::string sha256) {
   settings::Settings& s = line.settings;
   base::Progress progress(s.progress, s.log_format, s.quiet);
   const run::RegionHealth health = run::check_region(s.region, s.break_lock, progress);
@@ -292,6 +314,83 @@ int run_region(const std::vector<std::string>& arguments) {
                            health.published ? "the data of the published build are damaged" : "there are no data yet",
                            "Give a full extract: blockrand region repair " + s.region + " EXTRACT.osm.pbf");
   return update(line, std::move(sha256));
+}
+
+/// What each shard is to do, and how long that should take.
+std::string plan_report(const run::RegionShards& plan, const std::string& region) {
+  std::string out;
+  for (int shard = 1; shard <= plan.shards; ++shard) {
+    std::uint64_t areas = 0, buildings = 0;
+    double seconds = 0;
+    for (const run::PlannedArea& area : plan.areas)
+      if (area.shard == shard) ++areas, buildings += area.objects, seconds += area.cpu_seconds;
+    out += fmt::format("  shard {}/{}: {} areas, {} buildings, about {} of one processor\n", shard, plan.shards, areas,
+                       base::with_thousands(buildings), seconds_text(seconds));
+  }
+  out += fmt::format("work on each: blockrand region work {} --shard I/{}; then: blockrand region finish {}\n", region,
+                     plan.shards, region);
+  return out;
+}
+
+int plan(settings::Settings& s, run::UpdateOptions& options, base::Progress& progress) {
+  make_region(options, s);
+  const run::UpdateSummary summary = run::plan_region(options, s.shards, progress);
+  progress.end();
+  const int code = ended(options, summary, s);
+  if (summary.state == run::UpdateState::shared && !s.quiet && s.log_format != base::LogFormat::json)
+    std::fputs(plan_report(run::RegionShards::read(run::RegionFolder(options.folder)), options.folder).c_str(), stdout);
+  return code;
+}
+
+int work(const settings::Settings& s, const run::UpdateOptions& options, base::Progress& progress) {
+  if (s.shard.empty()) throw base::UsageError("region work needs --shard I/N: one of those that the plan has");
+  const run::SharedWork done = run::work_on_region(options, run::parse_shard(s.shard), progress);
+  progress.end();
+  if (!s.quiet)
+    std::fputs(fmt::format("shard {}: {} areas were built, {} were done already; {} of one processor\n", s.shard,
+                           done.built, done.were_done, seconds_text(done.cpu_seconds))
+                   .c_str(),
+               stdout);
+  return kSuccess;
+}
+
+/// Options and data that an action does not read are told.
+void refuse_unread(const settings::Settings& s) {
+  const bool plans = s.region_work == "plan", takes_data = plans || s.region_work == "repair";
+  const auto refuse = [&](const std::string& what) {
+    throw base::UsageError(fmt::format("region {} takes no {}.", s.region_work, what));
+  };
+  if (!plans && s.shards != 1) refuse("--shards");
+  if (s.region_work != "work" && !s.shard.empty()) refuse("--shard");
+  if (!takes_data && !s.data.empty()) refuse("data: region plan takes them in");
+}
+
+}  // namespace
+
+int run_region(const std::vector<std::string>& arguments) {
+  std::string sha256;
+  settings::CommandLine line = region_line(settings::kRegion, arguments, sha256);
+  if (line.help) {
+    std::fputs(settings::command_help(region_text()).c_str(), stdout);
+    return kSuccess;
+  }
+  settings::Settings& s = line.settings;
+  refuse_unread(s);
+  if (s.region_work == "repair") return repair(line, std::move(sha256));
+  clean_up_on_signals(s.log_format);
+  base::Progress progress(s.progress, s.log_format, s.quiet);
+  if (s.region_work == "drop") {
+    const int number = run::drop_region_plan(s.region, s.break_lock, progress);
+    progress.end();
+    if (!s.quiet) std::fputs(fmt::format("the plan of run {} is given up\n", number).c_str(), stdout);
+    return kSuccess;
+  }
+  run::UpdateOptions options = update_options(s, std::move(sha256), progress);
+  if (s.region_work == "plan") return plan(s, options, progress);
+  if (s.region_work == "work") return work(s, options, progress);
+  const run::UpdateSummary summary = run::finish_region(options, progress);
+  progress.end();
+  return ended(options, summary, s);
 }
 
 settings::CommandText status_text() {
@@ -324,6 +423,11 @@ int run_status(const std::vector<std::string>& arguments) {
     j["models"] = status.models, j["build_seconds"] = status.seconds;
     j["last_run"] = nlohmann::ordered_json::parse(status.last_run, nullptr, false);
     if (j["last_run"].is_discarded()) j["last_run"] = nullptr;
+    j["plan"] = status.plan ? nlohmann::ordered_json({{"run", status.plan->number},
+                                                      {"shards", status.plan->shards},
+                                                      {"areas", status.plan->areas},
+                                                      {"done", status.plan->done}})
+                            : nlohmann::ordered_json();
     j["waiting"] = status.waiting, j["waiting_problem"] = status.waiting_problem;
     std::fputs((j.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n").c_str(), stdout);
     return kSuccess;
@@ -340,6 +444,9 @@ int run_status(const std::vector<std::string>& arguments) {
     for (const int number : status.published) kept += (kept.empty() ? "" : ", ") + std::to_string(number);
     out += "builds that are kept: " + kept + "\n";
   }
+  if (status.plan)
+    out += fmt::format("run {} is under way in {} shards: {} of {} areas are done\n", status.plan->number,
+                       status.plan->shards, status.plan->done, status.plan->areas);
   if (!status.last_run.empty()) out += "last run: " + status.last_run + "\n";
   if (!status.waiting_problem.empty())
     out += "the next run will fail: " + status.waiting_problem + "\n";

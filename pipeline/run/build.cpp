@@ -18,6 +18,7 @@
 #include "pipeline/attributes/tagged_buildings.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/heap.h"
+#include "pipeline/base/host.h"
 #include "pipeline/base/pack.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/publish.h"
@@ -287,9 +288,7 @@ RunRecord run_record(const BuildOptions& options, std::chrono::steady_clock::tim
   run.tile_context_seconds = context_seconds;
   run.jobs = workers;
   if (options.areas == 0) run.inputs = {extract_file(options)};
-  char host[256] = "";
-  gethostname(host, sizeof host - 1);
-  run.host = host;
+  run.host = base::host_name();
   return run;
 }
 

@@ -35,11 +35,20 @@ struct WindowTooSmall : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+class SharedAreas;
+
+/// What is wrong with settings and inputs of a build in areas is told before long data are read. \throws as build
+void check_inputs_of_areas(const BuildOptions& options, base::Progress& progress);
+
 /// \throws base::UsageError  --areas or --area with what they cannot be used with
 void refuse_contradictions_of_areas(const BuildOptions& options);
 
 /// BuildOptions::areas. \throws as build
 BuildSummary build_in_areas(const BuildOptions& options, base::Progress& progress);
+
+/// The last step of a build whose areas other processes built: documents, publishing. Areas that the plan did not name and the earlier
+/// build has no more are built here. \throws as build
+BuildSummary finish_areas(const BuildOptions& options, const SharedAreas& shared, base::Progress& progress);
 
 /// BuildOptions::area: one of them, from the extract, as a build of its own. \throws as build
 BuildSummary build_one_area(const BuildOptions& options, base::Progress& progress);

@@ -62,6 +62,7 @@ RegionStatus region_status(const std::string& folder, const RegionOptions& optio
     state = DataState::read(region.state(*status.current));
     status.sequence = state.sequence;
   }
+  status.plan = plan_status(region);
   std::ifstream runs(folder + "/log/runs.jsonl", std::ios::binary);
   for (std::string line; std::getline(runs, line);)
     if (!line.empty()) status.last_run = line;

@@ -19,6 +19,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/base/error.h"
+#include "pipeline/base/host.h"
 #include "pipeline/base/text.h"
 
 namespace blockrand::run {
@@ -86,22 +87,6 @@ std::vector<fs::path> entries(const std::string& folder) {
                           ". Check permissions and free space; what is published stays as it was");
 }
 
-std::string host_name() {
-  char host[256] = "";
-  ::gethostname(host, sizeof host - 1);
-  return host;
-}
-
-/// Everything written so far to the disk of a folder is on it.
-void sync_disk(const std::string& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) cannot_write(folder, errno);
-  const bool synced = ::syncfs(descriptor) == 0;
-  const int error = errno;
-  ::close(descriptor);
-  if (!synced) cannot_write(folder, error);
-}
-
 std::string read_all(int descriptor) {
   std::string out(4096, '\0');
   const ssize_t size = ::pread(descriptor, out.data(), out.size(), 0);
@@ -110,6 +95,15 @@ std::string read_all(int descriptor) {
 }
 
 }  // namespace
+
+void sync_disk(const std::string& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) cannot_write(folder, errno);
+  const bool synced = ::syncfs(descriptor) == 0;
+  const int error = errno;
+  ::close(descriptor);
+  if (!synced) cannot_write(folder, error);
+}
 
 RegionFolder::RegionFolder(std::string path) : path_(std::move(path)) {
   while (path_.size() > 1 && path_.ends_with('/')) path_.pop_back();
@@ -303,14 +297,14 @@ RegionLock::RegionLock(const RegionFolder& region, bool take_over, base::Progres
     // Its process is gone, if it ran here: the kernel let go of the lock. Network disks may keep locks apart.
     struct stat info {};
     ::fstat(descriptor_, &info);
-    const bool elsewhere = text("host") != host_name(), old = std::time(nullptr) - info.st_mtime > kStale;
+    const bool elsewhere = text("host") != base::host_name(), old = std::time(nullptr) - info.st_mtime > kStale;
     if (elsewhere && !old && !take_over)
       give_up("a run on another host may work on this region (" + who +
               "). If it is gone for sure, add --break-lock; after a day that is not needed.");
     progress.warn(fmt::format("{}: left by {}, which is gone; taken over", path, who));
   }
   const nlohmann::json mine = {{"pid", std::to_string(::getpid())},
-                               {"host", host_name()},
+                               {"host", base::host_name()},
                                {"since", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))}};
   const std::string bytes = mine.dump() + "\n";
   if (::ftruncate(descriptor_, 0) != 0 ||

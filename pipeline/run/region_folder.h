@@ -34,6 +34,8 @@ class RegionFolder {
   std::string comparison(int number) const { return path_ + "/store/" + digits(number) + ".compare.json"; }
   std::string log(int number) const { return path_ + "/log/" + digits(number) + ".json"; }
   std::string changes(int number) const { return path_ + "/log/" + digits(number) + ".changes"; }
+  /// Of a build whose areas several processes build (region_shards.h), while it is under way.
+  std::string plan() const { return path_ + "/plan"; }
   /// Where work on tiles is kept from run to run.
   std::string cache() const { return path_ + "/cache"; }
   static std::string digits(int number);
@@ -86,6 +88,9 @@ class RegionLock {
   int descriptor_ = -1;
   std::jthread alive_;  ///< touches the lock, so that other hosts see that its run lives
 };
+
+/// Everything written so far to the disk of a folder is on it. \throws base::OutputError
+void sync_disk(const std::string& folder);
 
 /// Writes a small file beside its place and renames it there, so that a reader finds the old one or the new one whole.
 /// \throws base::OutputError

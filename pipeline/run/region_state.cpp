@@ -27,8 +27,7 @@ std::string dumped(const Json& j, int indent) {
   return j.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-DataState DataState::read(const std::string& path) {
-  const Json j = read_json(path);
+DataState DataState::of(const Json& j) {
   DataState state;
   state.sha256 = text_in(j, "data_sha256"), state.settings = text_in(j, "settings_sha256");
   state.input = text_in(j, "input");
@@ -39,16 +38,17 @@ DataState DataState::read(const std::string& path) {
   return state;
 }
 
-void DataState::write(const std::string& path) const {
-  const Json j = {{"data_sha256", sha256},
-                  {"settings_sha256", settings},
-                  {"sequence", sequence ? Json(*sequence) : Json()},
-                  {"input", input},
-                  {"areas", static_cast<unsigned>(areas)},
-                  {"crs_chosen", crs_chosen},
-                  {"replaced", replaced ? Json(static_cast<unsigned>(*replaced)) : Json()}};
-  write_whole(path, dumped(j, 1));
+Json DataState::json() const {
+  return {{"data_sha256", sha256},
+          {"settings_sha256", settings},
+          {"sequence", sequence ? Json(*sequence) : Json()},
+          {"input", input},
+          {"areas", static_cast<unsigned>(areas)},
+          {"crs_chosen", crs_chosen},
+          {"replaced", replaced ? Json(static_cast<unsigned>(*replaced)) : Json()}};
 }
+
+void DataState::write(const std::string& path) const { write_whole(path, dumped(json(), 1)); }
 
 std::string now_utc() {
   const std::time_t now = std::time(nullptr);

@@ -27,7 +27,9 @@ struct DataState {
   bool crs_chosen = false;      ///< by the program, not by region.toml
   std::optional<int> replaced;  ///< the build that was published before
 
-  static DataState read(const std::string& path);
+  static DataState of(const nlohmann::ordered_json& j);
+  static DataState read(const std::string& path) { return of(read_json(path)); }
+  nlohmann::ordered_json json() const;
   /// \throws base::OutputError
   void write(const std::string& path) const;
 };

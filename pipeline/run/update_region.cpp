@@ -20,13 +20,14 @@
 #include "pipeline/base/sha256.h"
 #include "pipeline/base/text.h"
 #include "pipeline/georef/crs.h"
-#include "pipeline/outputs/area_folders.h"
 #include "pipeline/run/area_record.h"
 #include "pipeline/run/build_inputs.h"
 #include "pipeline/run/changes_map.h"
+#include "pipeline/run/link_unchanged.h"
 #include "pipeline/run/region_folder.h"
 #include "pipeline/run/region_hook.h"
 #include "pipeline/run/region_plan.h"
+#include "pipeline/run/region_shards.h"
 #include "pipeline/run/region_state.h"
 #include "pipeline/run/tile_key.h"
 #include "pipeline/run/work_cache.h"
@@ -50,56 +51,6 @@ struct Scratch {
   std::string path;
 };
 
-bool same_bytes(const std::string& a, const std::string& b) {
-  std::ifstream x(a, std::ios::binary), y(b, std::ios::binary);
-  std::string p(1 << 16, '\0'), q(1 << 16, '\0');
-  while (x && y) {
-    x.read(p.data(), static_cast<std::streamsize>(p.size())), y.read(q.data(), static_cast<std::streamsize>(q.size()));
-    if (x.gcount() != y.gcount() || std::memcmp(p.data(), q.data(), static_cast<std::size_t>(x.gcount())) != 0)
-      return false;
-  }
-  return x.eof() && y.eof();
-}
-
-/// Files that both builds have become one on disk.
-void link_unchanged(const std::string& before, const std::string& after, const std::set<std::string>& taken_over,
-                    UpdateSummary& summary) {
-  for (const std::string& area : outputs::area_folders(after)) {
-    if (!taken_over.contains(area.substr(area.find('/') + 1))) {
-      link_unchanged(before + "/" + area, after + "/" + area, {}, summary);
-      continue;
-    }
-    const Json its = read_json(after + "/" + area + "/build.json");  // linked when it was taken over
-    if (its.contains("files"))
-      for (const auto& [path, entry] : its["files"].items())
-        ++summary.linked, summary.linked_bytes += entry.value("bytes", std::uint64_t{0});
-  }
-  const Json old = read_json(before + "/build.json"), now = read_json(after + "/build.json");
-  if (!old.contains("files") || !now.contains("files")) return;
-  for (const auto& [path, entry] : now["files"].items()) {
-    if (!old["files"].contains(path) || old["files"][path] != entry) continue;
-    const std::string from = before + "/" + path, to = after + "/" + path, link = to + ".link";
-    struct stat one {
-    }, other{};
-    if (::stat(from.c_str(), &one) == 0 && ::stat(to.c_str(), &other) == 0 && one.st_ino == other.st_ino &&
-        one.st_dev == other.st_dev) {  // by way of the cache
-      ++summary.linked;
-      summary.linked_bytes += static_cast<std::uint64_t>(one.st_size);
-      continue;
-    }
-    // A disk may have lost what the record says: bytes are compared, not hashes.
-    if (!same_bytes(from, to)) continue;
-    ::unlink(link.c_str());
-    if (::link(from.c_str(), link.c_str()) != 0) continue;  // another disk, too many links: two files, then
-    if (::rename(link.c_str(), to.c_str()) != 0) {
-      ::unlink(link.c_str());
-      continue;
-    }
-    ++summary.linked;
-    if (entry.contains("bytes")) summary.linked_bytes += entry["bytes"].get<std::uint64_t>();
-  }
-}
-
 std::string_view word(UpdateState state) {
   switch (state) {
     case UpdateState::published:
@@ -110,6 +61,8 @@ std::string_view word(UpdateState state) {
       return "refused";
     case UpdateState::planned:
       return "planned";
+    case UpdateState::shared:
+      return "shared";
   }
   return "";
 }
@@ -238,9 +191,26 @@ class Updater {
     if (std::rename(data.path.c_str(), place.c_str()) != 0)
       throw base::OutputError(place + ": cannot be written: " + std::strerror(errno));
     data.path = place;
-    UpdateSummary done = build_and_publish(current, fresh);
+    UpdateSummary done = shards_ > 0 ? plan_shards(current, fresh) : build_and_publish(current, fresh);
     data.path.clear();
     return done;
+  }
+
+  /// As `run`, up to the areas, which others build. \param shards  how many share them
+  UpdateSummary plan(int shards) {
+    shards_ = shards;
+    return run();
+  }
+
+  /// The rest of it.
+  UpdateSummary finish(const RegionShards& plan) {
+    const std::optional<int> current = region_.current();
+    summary_.before = current;
+    if (current) before_ = DataState::read(region_.state(*current));
+    check_baseline(current);
+    plan.restore(summary_);
+    BuildOptions build = build_options_for(options_, region_, plan.number, current, before_, plan.state.areas);
+    return publish_built(current, plan.state, finish_areas(build, plan.shared(region_), progress_));
   }
 
   /// What is known of a run that throws.
@@ -252,6 +222,29 @@ class Updater {
     summary_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     if (!options_.dry_run) append_run(region_, run_line(summary_), progress_);
     return summary_;
+  }
+
+  UpdateSummary plan_shards(std::optional<int> current, const DataState& fresh) {
+    if (fresh.areas == 0)
+      throw base::UsageError(fmt::format(
+          "{} is built as a whole, which is one piece of work: blockrand update builds it. To share the work write "
+          "areas = {} below [build] in {}",
+          region_.path(), kUsualAreas, region_.settings()));
+    BuildOptions build = build_options_for(options_, region_, summary_.number, current, before_, fresh.areas);
+    build.changes = changes_;
+    RegionShards plan;
+    plan.number = summary_.number, plan.shards = shards_, plan.before = current, plan.state = fresh;
+    plan.note(summary_);
+    remove_plan(region_);  // what is left of one that was broken off
+    try {
+      plan.areas = plan_areas(build, plan.shared(region_), shards_, progress_);
+      plan.write(region_);
+    } catch (...) {
+      remove_plan(region_);
+      throw;
+    }
+    summary_.planned_areas = plan.areas.size();
+    return ended(UpdateState::shared);
   }
 
   /// Which tiles a run would build, and how long it should take.
@@ -439,6 +432,12 @@ class Updater {
     build.changes = changes_;
     const BuildSummary built = blockrand::run::build(build, progress_);
     build.changes = nullptr, changes_ = nullptr;
+    return publish_built(current, fresh, built);
+  }
+
+  /// Gates, and the switch.
+  UpdateSummary publish_built(std::optional<int> current, const DataState& fresh, const BuildSummary& built) {
+    const int number = summary_.number;
     summary_.folder = region_.build(number);
     summary_.tiles_built = built.tiles_built, summary_.tiles_kept = built.tiles_kept;
     summary_.tiles_built_for = built.tiles_built_for;
@@ -473,7 +472,10 @@ class Updater {
       summary_.folder = region_.set_aside(number);
       return ended(UpdateState::refused);
     }
-    if (current) link_unchanged(region_.build(*current), region_.build(number), built.areas_taken_over, summary_);
+    if (current) {
+      const LinkedFiles linked = link_unchanged(region_.build(*current), region_.build(number), built.areas_taken_over);
+      summary_.linked = linked.files, summary_.linked_bytes = linked.bytes;
+    }
     write_whole(region_.settings_of(number), read_text(region_.settings()));
     if (!comparison_.empty()) write_whole(region_.comparison(number), comparison_);
     fresh.write(region_.state(number));
@@ -506,6 +508,7 @@ class Updater {
   const UpdateOptions& options_;
   const RegionFolder& region_;
   base::Progress& progress_;
+  int shards_ = 0;  ///< by which the areas are to be built; 0: here
   /// From the data of the published build to the new ones; null where these come as a whole.
   std::shared_ptr<importers::osm::ChangedObjects> changes_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -516,15 +519,40 @@ class Updater {
 
 }  // namespace
 
-UpdateSummary update_region(const UpdateOptions& options, base::Progress& progress) {
+namespace {
+
+void check_explained(const UpdateOptions& options) {
   if (!options.build.outputs.explain)
     throw base::UsageError(
         "a region needs explanations, which its builds are compared by: take explain = false out of "
         "region.toml.");
+}
+
+/// A run that changes the region: what was left by others is removed first, and its end written down.
+UpdateSummary run_alone(const UpdateOptions& options, const RegionFolder& region, base::Progress& progress,
+                        const std::function<UpdateSummary(Updater&)>& work) {
+  Updater updater(options, region, progress);
+  try {
+    const UpdateSummary summary = work(updater);
+    if (summary.state != UpdateState::shared)
+      call_hook(options.region.hook, options.dry_run, region, word(summary.state), summary.number, progress);
+    return summary;
+  } catch (const std::exception& error) {
+    Json line = run_line(updater.so_far());
+    line["state"] = "failed", line["error"] = error.what();
+    append_run(region, line, progress);
+    call_hook(options.region.hook, options.dry_run, region, "failed", updater.so_far().number, progress);
+    throw;
+  }
+}
+
+UpdateSummary begin_run(const UpdateOptions& options, base::Progress& progress,
+                        const std::function<UpdateSummary(Updater&)>& work) {
+  check_explained(options);
   const RegionFolder region(options.folder);
-  if (options.dry_run) return Updater(options, region, progress).run();
   region.make();
   const RegionLock lock(region, options.break_lock, progress);
+  refuse_while_planned(region);
   for (const std::string& path : region.remove_unfinished())
     progress.warn("removed " + path + ": left by a run that was broken off");
   // A run that died between its gates and the switch left the region's first build without a pointer.
@@ -535,18 +563,50 @@ UpdateSummary update_region(const UpdateOptions& options, base::Progress& progre
     region.publish(builds.front());
     progress.warn(fmt::format("{} was missing; it leads to the only build now, {}", pointer, builds.front()));
   }
-  Updater updater(options, region, progress);
-  try {
-    const UpdateSummary summary = updater.run();
-    call_hook(options.region.hook, options.dry_run, region, word(summary.state), summary.number, progress);
-    return summary;
-  } catch (const std::exception& error) {
-    Json line = run_line(updater.so_far());
-    line["state"] = "failed", line["error"] = error.what();
-    append_run(region, line, progress);
-    call_hook(options.region.hook, options.dry_run, region, "failed", updater.so_far().number, progress);
-    throw;
+  return run_alone(options, region, progress, work);
+}
+
+}  // namespace
+
+UpdateSummary update_region(const UpdateOptions& options, base::Progress& progress) {
+  if (options.dry_run) {
+    check_explained(options);
+    const RegionFolder region(options.folder);
+    return Updater(options, region, progress).run();
   }
+  return begin_run(options, progress, [](Updater& updater) { return updater.run(); });
+}
+
+UpdateSummary plan_region(const UpdateOptions& options, int shards, base::Progress& progress) {
+  return begin_run(options, progress, [&](Updater& updater) { return updater.plan(shards); });
+}
+
+UpdateSummary finish_region(const UpdateOptions& options, base::Progress& progress) {
+  check_explained(options);
+  const RegionFolder region(options.folder);
+  const RegionLock lock(region, options.break_lock, progress);
+  const RegionShards plan = RegionShards::read(region);
+  plan.check_same(region, settings_sha256(options));
+  plan.check_done(region);
+  if (plan.tell_unended(region, progress)) WorkCache::mark_open(region.cache());
+  const UpdateSummary summary =
+      run_alone(options, region, progress, [&](Updater& updater) { return updater.finish(plan); });
+  remove_plan(region);
+  return summary;
+}
+
+SharedWork work_on_region(const UpdateOptions& options, const Shard& shard, base::Progress& progress) {
+  const RegionFolder region(options.folder);
+  const RegionShards plan = RegionShards::read(region);
+  plan.check_same(region, settings_sha256(options));
+  plan.check_shard(shard);
+  std::set<model::TileId> areas;
+  for (const PlannedArea& area : plan.areas)
+    if (area.shard == shard.number) areas.insert(area.id);
+  if (areas.empty()) return {};
+  const DataState before = plan.before ? DataState::read(region.state(*plan.before)) : DataState();
+  const BuildOptions build = build_options_for(options, region, plan.number, plan.before, before, plan.state.areas);
+  return work_on_areas(build, plan.shared(region), areas, progress);
 }
 
 }  // namespace blockrand::run

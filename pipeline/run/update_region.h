@@ -11,6 +11,7 @@
 #include "pipeline/run/build.h"
 #include "pipeline/run/build_changes.h"
 #include "pipeline/run/region_options.h"
+#include "pipeline/run/region_shards.h"
 
 namespace blockrand::run {
 
@@ -37,7 +38,8 @@ enum class UpdateState {
   published,  ///< a new build stands
   unchanged,  ///< nothing to build: data, settings and program are those of the published build
   refused,    ///< built, but a gate is exceeded: not published
-  planned     ///< dry run
+  planned,    ///< dry run
+  shared      ///< planned: shards are to be worked on by others, then finished
 };
 
 struct UpdateSummary {
@@ -55,6 +57,7 @@ struct UpdateSummary {
   std::map<std::string, std::uint64_t> tiles_built_for;  ///< BuildSummary::tiles_built_for
   std::uint64_t areas = 0, areas_kept = 0;               ///< of a region in areas: all, and those that stay as they are
   std::uint64_t linked = 0, linked_bytes = 0;            ///< files that are those of the build before
+  std::uint64_t planned_areas = 0;                       ///< that shards are to build
   double expected_seconds = 0;                           ///< that the run should take: of a dry run; 0: unknown
   double seconds = 0;
 };
@@ -64,6 +67,18 @@ struct UpdateSummary {
 /// \throws base::InputError   unreadable data, a gap in the change files, damaged store
 /// \throws base::OutputError  the disk is full or cannot be written
 UpdateSummary update_region(const UpdateOptions& options, base::Progress& progress);
+
+/// The same in three steps, of which any number of processes on hosts that share the region's disk do the middle one: what is built
+/// is the same, byte by byte. `plan_region` prepares the data and gives each area to a shard; with nothing to build it ends as
+/// `update_region` does. `finish_region` gates and publishes.
+/// \throws base::UsageError  a plan is under way already (plan), there is none, settings or program are others than its own, or areas
+///                           are missing (finish): says which shards
+/// \throws as update_region
+UpdateSummary plan_region(const UpdateOptions& options, int shards, base::Progress& progress);
+SharedWork work_on_region(const UpdateOptions& options, const Shard& shard, base::Progress& progress);
+UpdateSummary finish_region(const UpdateOptions& options, base::Progress& progress);
+/// Gives a plan up, with what was built for it. What is published stays. \returns  its run
+int drop_region_plan(const std::string& folder, bool break_lock, base::Progress& progress);
 
 /// What `blockrand region repair` finds, after it has removed damaged work.
 struct RegionHealth {
@@ -76,6 +91,7 @@ RegionHealth check_region(const std::string& folder, bool break_lock, base::Prog
 
 /// What `blockrand status` tells.
 struct RegionStatus {
+  std::optional<PlanStatus> plan;  ///< that is under way
   std::optional<int> current;
   std::vector<int> published;
   std::string data_time;

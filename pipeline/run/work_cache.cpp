@@ -14,6 +14,7 @@
 #include <iterator>
 
 #include "pipeline/base/error.h"
+#include "pipeline/base/host.h"
 #include "pipeline/base/pack.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/base/text.h"
@@ -231,6 +232,10 @@ WorkCache::WorkCache(std::string folder, const std::string& program, base::Progr
   }
 }
 
+void WorkCache::mark_open(const std::string& folder) {
+  if (program_of(folder)) write_all(folder + "/" + std::string(kOpen), "");
+}
+
 std::string WorkCache::notes() const {
   return folder_ + "/" + std::string(kParts) + (area_.empty() ? "" : "." + area_);
 }
@@ -296,7 +301,8 @@ bool WorkCache::has(std::string_view kind, const std::string& key) const {
 void WorkCache::keep(std::string_view kind, const std::string& key, std::string_view bytes,
                      std::span<const base::PublishedFile> files, const std::string& folder) {
   if (mode_ == Mode::look) return;
-  const std::string making = fmt::format("{}/{}/{}-{}", folder_, kNew, ::getpid(), made_++);
+  // Hosts that share a disk have the same numbers of processes.
+  const std::string making = fmt::format("{}/{}/{}-{}", folder_, kNew, base::process_name(), made_++);
   try {
     std::error_code error;
     fs::create_directory(making, error);

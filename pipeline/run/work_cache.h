@@ -33,6 +33,10 @@ namespace blockrand::run {
 /// Several threads may use one at a time. Two processes must not: who opens one holds its lock.
 class WorkCache {
  public:
+  /// Says that a process worked there which may have been killed: who opens it next reads all of it. A folder that is no cache yet
+  /// stays as it is.
+  static void mark_open(const std::string& folder);
+
   enum class Mode {
     work,  ///< alone: with the lock
     part,  ///< a process of one that has the lock

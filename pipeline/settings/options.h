@@ -26,7 +26,9 @@ struct Settings {
   bool dry_run = false;                             ///< `build` and `update` tell what they would do
   bool break_lock = false;                          ///< the lock of another host is taken over
   std::int64_t to = -1;                             ///< build that `rollback` goes to; -1: the one before
-  std::string region_work;                          ///< of `region`: repair
+  std::string region_work;                          ///< of `region`: repair, plan, work, finish or drop
+  int shards = 1;                                   ///< of `region plan`
+  std::string shard;                                ///< of `region work`: "2/8"
   std::string cache_work, cache;                    ///< of `cache`: stat, verify or prune, and the folder
   std::int64_t keep_bytes = -1;                     ///< of `cache prune`; -1: not said
   blockrand::validate::ValidateOptions validation;  ///< but for its folder and jobs, which other commands have too
