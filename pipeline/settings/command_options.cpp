@@ -117,7 +117,7 @@ Table of_caches() {
 }
 
 Table of_districts() {
-  return {word({.name = "WORK",
+  return {word({.name = "ACTION",
                 .argument = "ACTION",
                 .commands = kDistricts,
                 .help = "check, show or diff",
