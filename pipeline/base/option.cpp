@@ -37,6 +37,8 @@ std::string_view name(Commands command) {
       return "view";
     case kCache:
       return "cache";
+    case kPublish:
+      return "publish";
   }
   return "";
 }

@@ -35,10 +35,11 @@ enum Commands : unsigned {
   kRollback = 512,
   kRegion = 1024,
   kCache = 2048,
-  kView = 4096
+  kView = 4096,
+  kPublish = 8192
 };
 inline constexpr Commands kAllCommands[] = {kBuild,  kInfo,   kExplain,  kValidate, kCompare, kDistricts, kGrammar,
-                                            kUpdate, kStatus, kRollback, kRegion,   kCache,   kView};
+                                            kUpdate, kStatus, kRollback, kRegion,   kCache,   kView,      kPublish};
 std::string_view name(Commands command);  ///< "build"
 
 /// Where an option stands in help and reference. One with keys is a table of the config file, too, and all but the main

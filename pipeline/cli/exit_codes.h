@@ -10,6 +10,7 @@ enum ExitCode : int {
   kBelowQuality = 3,   ///< finished with buildings below the asked quality; only with --strict
   kInternalError = 4,  ///< the output could not be written, or a bug
   kRefused = 5,        ///< built, but refused by a gate: nothing was published
+  kNotOutward = 6,     ///< built and published here, but not everywhere that region.toml names
   kSignalBase = 128,   ///< ended by a signal: 128 plus its number
 };
 

@@ -15,9 +15,12 @@
 #include "pipeline/cli/configs_folder.h"
 #include "pipeline/cli/errors.h"
 #include "pipeline/cli/exit_codes.h"
+#include "pipeline/cli/publish_command.h"
 #include "pipeline/cli/signals.h"
 #include "pipeline/compare/compare.h"
 #include "pipeline/compare/comparison_report.h"
+#include "pipeline/outward/postgis.h"
+#include "pipeline/outward/publish.h"
 #include "pipeline/run/region_folder.h"
 #include "pipeline/run/update_region.h"
 #include "pipeline/settings/command_line.h"
@@ -46,7 +49,8 @@ settings::CommandLine region_line(settings::Commands command, const std::vector<
   }
   settings::Settings file;
   sha256 = base::sha256_file(region.settings());
-  settings::read_config(region.settings(), file, settings::kBuild | settings::kUpdate);
+  settings::read_config(region.settings(), file, settings::kBuild | settings::kUpdate | settings::kPublish);
+  outward::refuse_password_in(region.settings(), file.publishing.postgis);
   const auto refuse = [&](const char* key, const char* remedy) {
     throw base::InputError(region.settings(), std::string("[build] ") + key, "has no place in a region", remedy);
   };
@@ -182,6 +186,7 @@ settings::CommandText update_text() {
                      {"2", "unreadable or invalid input"},
                      {"4", "output could not be written or internal error"},
                      {"5", "built, but refused by a gate of the region"},
+                     {"6", "built and published here, but not where [publish] sends it: to do"},
                      {"128 + N", "ended by signal N"}}};
 }
 
@@ -234,17 +239,22 @@ void make_region(run::UpdateOptions& options, const settings::Settings& s) {
       throw base::UsageError(options.folder + " is no region yet. Begin with an extract: blockrand update " +
                              options.folder + " EXTRACT.osm.pbf");
     std::filesystem::create_directories(options.folder, error);
-    run::write_whole(region.settings(), settings::config_template(settings::kBuild | settings::kUpdate));
+    run::write_whole(region.settings(),
+                     settings::config_template(settings::kBuild | settings::kUpdate | settings::kPublish));
     options.settings_sha256 = base::sha256_file(region.settings());
   }
 }
 
-int ended(const run::UpdateOptions& options, const run::UpdateSummary& summary, const settings::Settings& s) {
+int ended(const run::UpdateOptions& options, const run::UpdateSummary& summary, const settings::Settings& s,
+          base::Progress& progress) {
   if (s.log_format == base::LogFormat::json)
     std::fputs(update_json(summary).c_str(), stdout);
   else if (!s.quiet || summary.state == run::UpdateState::refused)
     std::fputs(update_report(options, summary).c_str(), stdout);
-  return summary.state == run::UpdateState::refused ? kRefused : kSuccess;
+  if (summary.state == run::UpdateState::refused) return kRefused;
+  if (summary.state == run::UpdateState::planned || summary.state == run::UpdateState::shared) return kSuccess;
+  std::fflush(stdout);
+  return publish_after_update(s, progress) ? kSuccess : kNotOutward;
 }
 
 /// \param line  of `update`, or of `region repair` with its extract
@@ -256,7 +266,7 @@ int update(settings::CommandLine& line, std::string sha256) {
   make_region(options, s);
   const run::UpdateSummary summary = run::update_region(options, progress);
   progress.end();
-  return ended(options, summary, s);
+  return ended(options, summary, s, progress);
 }
 
 }  // namespace
@@ -293,7 +303,8 @@ settings::CommandText region_text() {
                          {"1", "wrong usage"},
                          {"2", "unreadable or invalid input"},
                          {"4", "output could not be written or internal error"},
-                         {"5", "built, but refused by a gate of the region"}}};
+                         {"5", "built, but refused by a gate of the region"},
+                         {"6", "built and published here, but not where [publish] sends it: to do"}}};
 }
 
 namespace {
@@ -336,7 +347,7 @@ int plan(settings::Settings& s, run::UpdateOptions& options, base::Progress& pro
   make_region(options, s);
   const run::UpdateSummary summary = run::plan_region(options, s.shards, progress);
   progress.end();
-  const int code = ended(options, summary, s);
+  const int code = ended(options, summary, s, progress);
   if (summary.state == run::UpdateState::shared && !s.quiet && s.log_format != base::LogFormat::json)
     std::fputs(plan_report(run::RegionShards::read(run::RegionFolder(options.folder)), options.folder).c_str(), stdout);
   return code;
@@ -390,7 +401,7 @@ int run_region(const std::vector<std::string>& arguments) {
   if (s.region_work == "work") return work(s, options, progress);
   const run::UpdateSummary summary = run::finish_region(options, progress);
   progress.end();
-  return ended(options, summary, s);
+  return ended(options, summary, s, progress);
 }
 
 settings::CommandText status_text() {
@@ -428,6 +439,7 @@ int run_status(const std::vector<std::string>& arguments) {
                                                       {"areas", status.plan->areas},
                                                       {"done", status.plan->done}})
                             : nlohmann::ordered_json();
+    j["outward_to_do"] = outward::outward_to_do(s.region, status.current);
     j["waiting"] = status.waiting, j["waiting_problem"] = status.waiting_problem;
     std::fputs((j.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n").c_str(), stdout);
     return kSuccess;
@@ -447,6 +459,7 @@ int run_status(const std::vector<std::string>& arguments) {
   if (status.plan)
     out += fmt::format("run {} is under way in {} shards: {} of {} areas are done\n", status.plan->number,
                        status.plan->shards, status.plan->done, status.plan->areas);
+  for (const std::string& line : outward::outward_to_do(s.region, status.current)) out += line + "\n";
   if (!status.last_run.empty()) out += "last run: " + status.last_run + "\n";
   if (!status.waiting_problem.empty())
     out += "the next run will fail: " + status.waiting_problem + "\n";

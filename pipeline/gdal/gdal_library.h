@@ -30,10 +30,12 @@
   F(GDALDatasetCreateLayer)           \
   F(GDALDatasetExecuteSQL)            \
   F(GDALDatasetGetLayer)              \
+  F(GDALDatasetGetLayerByName)        \
   F(GDALDatasetGetLayerCount)         \
   F(GDALDatasetReleaseResultSet)      \
   F(GDALDatasetRollbackTransaction)   \
   F(GDALDatasetStartTransaction)      \
+  F(GDALFlushCache)                   \
   F(GDALGetCacheMax64)                \
   F(GDALGetColorEntryAsRGB)           \
   F(GDALGetColorEntryCount)           \
@@ -63,26 +65,34 @@
   F(GDALSetCacheMax64)                \
   F(OGR_FD_GetFieldCount)             \
   F(OGR_FD_GetFieldDefn)              \
+  F(OGR_FD_GetFieldIndex)             \
   F(OGR_F_Create)                     \
   F(OGR_F_Destroy)                    \
   F(OGR_F_GetFID)                     \
+  F(OGR_F_GetFieldAsDouble)           \
+  F(OGR_F_GetFieldAsInteger64)        \
   F(OGR_F_GetFieldAsString)           \
   F(OGR_F_GetGeometryRef)             \
+  F(OGR_F_IsFieldSetAndNotNull)       \
   F(OGR_F_SetFID)                     \
   F(OGR_F_SetFieldDouble)             \
   F(OGR_F_SetFieldInteger)            \
   F(OGR_F_SetFieldInteger64)          \
   F(OGR_F_SetFieldNull)               \
   F(OGR_F_SetFieldString)             \
+  F(OGR_F_SetGeometry)                \
   F(OGR_F_SetGeometryDirectly)        \
   F(OGR_Fld_Create)                   \
   F(OGR_Fld_Destroy)                  \
   F(OGR_Fld_GetNameRef)               \
+  F(OGR_Fld_GetSubType)               \
+  F(OGR_Fld_GetType)                  \
   F(OGR_Fld_SetSubType)               \
   F(OGR_Fld_SetWidth)                 \
   F(OGR_GT_Flatten)                   \
   F(OGR_G_CreateFromWkbEx)            \
   F(OGR_G_DestroyGeometry)            \
+  F(OGR_G_ExportToIsoWkb)             \
   F(OGR_G_GetGeometryCount)           \
   F(OGR_G_GetGeometryRef)             \
   F(OGR_G_GetGeometryType)            \
@@ -90,8 +100,10 @@
   F(OGR_G_GetPointCount)              \
   F(OGR_G_GetX)                       \
   F(OGR_G_GetY)                       \
+  F(OGR_G_WkbSize)                    \
   F(OGR_L_CreateFeature)              \
   F(OGR_L_CreateField)                \
+  F(OGR_L_GetGeomType)                \
   F(OGR_L_GetLayerDefn)               \
   F(OGR_L_GetName)                    \
   F(OGR_L_GetNextFeature)             \

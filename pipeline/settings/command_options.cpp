@@ -56,13 +56,14 @@ Table of_regions() {
                  .help_of = {{kRegion, "repair: an extract. plan: as update takes them"}}},
                 &S::data),
           flag({.name = "dry-run",
-                .commands = kUpdate | kBuild,
+                .commands = kUpdate | kBuild | kPublish,
                 .help = "tell what would be done and how long that may take; nothing is built; build: check all that "
-                        "can be checked before, and write nothing",
+                        "can be checked before, and write nothing; publish: which files would be sent",
                 .help_of = {{kUpdate, "tell what would be done and how long that may take; nothing is built"},
                             {kBuild,
                              "check options, inputs and place, tell what would be built and what that would "
-                             "take; nothing is written"}},
+                             "take; nothing is written"},
+                            {kPublish, "tell which files would be sent and removed; nothing is"}},
                 .after = "force"},
                &S::dry_run),
           flag({.name = "break-lock",
@@ -88,6 +89,17 @@ Table of_regions() {
                    .maximum = 999999,
                    .help = "number of the build to go back to; -1: the one before the current one"},
                   &S::to)};
+}
+
+Table of_publishing() {
+  return {text({.name = "SOURCE",
+                .argument = "SOURCE",
+                .type = OptionType::folder,
+                .commands = kPublish,
+                .help = "a region, whose published build is sent, or the output folder of a build",
+                .if_missing = "no SOURCE is given: name a region, or the output folder of a build.",
+                .after = "REGION"},
+               &S::source)};
 }
 
 Table of_caches() {
@@ -323,8 +335,8 @@ const base::Choices<base::ProgressStyle> kProgressStyles = {{"auto", base::Progr
 const base::Choices<base::LogFormat> kLogFormats = {{"text", base::LogFormat::text}, {"json", base::LogFormat::json}};
 
 Table of_messages() {
-  constexpr unsigned all =
-      kBuild | kInfo | kValidate | kCompare | kDistricts | kGrammar | kUpdate | kRollback | kRegion | kCache | kView;
+  constexpr unsigned all = kBuild | kInfo | kValidate | kCompare | kDistricts | kGrammar | kUpdate | kRollback |
+                           kRegion | kCache | kView | kPublish;
   constexpr base::OptionSection messages{.name = "messages", .title = "Messages"};
   return base::in_section<S>(
       messages,
@@ -349,8 +361,8 @@ Table of_messages() {
 }  // namespace
 
 std::vector<base::OptionTable<Settings>> command_options() {
-  return {of_finished_builds(), of_regions(), of_caches(),  of_districts(), of_grammar(), of_build(),
-          of_explain(),         of_view(),    of_several(), of_compare(),   of_messages()};
+  return {of_finished_builds(), of_regions(), of_publishing(), of_caches(),  of_districts(), of_grammar(),
+          of_build(),           of_explain(), of_view(),       of_several(), of_compare(),   of_messages()};
 }
 
 }  // namespace blockrand::settings

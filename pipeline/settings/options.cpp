@@ -34,6 +34,7 @@ std::vector<Option> collected() {
   std::vector<Option> all;
   add(base::of_member(run::build_options(), &Settings::build), all);
   add(base::of_member(run::region_options(), &Settings::region_options), all);
+  add(base::of_member(outward::publish_options(), &Settings::publishing), all);
   add(base::of_member(validate::validate_options(), &Settings::validation), all);
   add(base::of_member(compare::compare_options(), &Settings::comparison), all);
   add(base::of_member(compare::report_options(), &Settings::comparison_report), all);

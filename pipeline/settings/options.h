@@ -9,6 +9,7 @@
 #include "pipeline/base/option.h"
 #include "pipeline/base/progress.h"
 #include "pipeline/compare/options.h"
+#include "pipeline/outward/options.h"
 #include "pipeline/run/options.h"
 #include "pipeline/run/region_options.h"
 #include "pipeline/validate/options.h"
@@ -22,6 +23,8 @@ struct Settings {
   std::string folder;  ///< a finished build, for the commands that read one
   std::string region;  ///< folder of a region, for the commands that are about one
   run::RegionOptions region_options;
+  std::string source;                               ///< of `publish`: a region, or a build
+  outward::PublishOptions publishing;               ///< where `publish` sends a build, and how
   std::vector<std::string> data;                    ///< of `update`: an extract, change files
   bool dry_run = false;                             ///< `build` and `update` tell what they would do
   bool break_lock = false;                          ///< the lock of another host is taken over

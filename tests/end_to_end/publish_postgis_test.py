@@ -1,0 +1,190 @@
+"""Builds in a PostGIS database: twenty nights of changed rows equal a fresh load; nothing half is ever seen; passwords stay unsaid.
+Says "not checked" where PostgreSQL or PostGIS are not installed."""
+import contextlib
+import json
+import os
+import random
+import sqlite3
+import struct
+import sys
+
+from blockrand_run import SAMPLE, blockrand, extract, main, read_json
+from osm_files import read_xml
+from postgres_run import Server, missing
+from region_run import LIMITS_OFF, Map, RegionTest
+
+LAYERS = {'buildings', 'parts', 'facade_edges', 'blocks', 'courtyards', 'cells', 'surfaces', 'reported', 'tiles'}
+
+
+class Postgis(RegionTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        if reason := missing():
+            print(f'not checked: {reason}', file=sys.stderr)
+            cls.skipTest(cls, reason)
+        cls.server = Server().start()
+        cls.addClassCleanup(cls.server.stop)
+
+    def publish(self, source, connection, *arguments, code=0, env=None):
+        run = blockrand('publish', source, '--postgis', connection, '--progress', 'none', '--log-format', 'json', *arguments,
+                        env=self.server.environment if env is None else env)
+        self.assertEqual(run.code, code, run)
+        self.assertNotIn('hush-hush', run.out + run.err)
+        return json.loads(run.out.splitlines()[-1])['parts'][0].get('figures', {}) if code == 0 else run
+
+    def tables(self, database, schema='blockrand'):
+        return {r[0] for r in self.server.sql(database, f"SELECT table_name FROM information_schema.tables WHERE table_schema = '{schema}'")}
+
+    def rows(self, database, table, schema='blockrand'):
+        """All rows of a table as texts, without fid, geometries as hexadecimal EWKB; columns by name."""
+        columns = sorted(r[0] for r in self.server.sql(
+            database, f"SELECT column_name FROM information_schema.columns WHERE table_schema = '{schema}' AND table_name = '{table}'")
+            if r[0] not in ('fid', 'loaded'))
+        listed = ', '.join(f'"{c}"::text' for c in columns)
+        return columns, sorted(map(tuple, self.server.sql(database, f'SELECT {listed} FROM "{schema}"."{table}"')))
+
+    def same_as_fresh(self, source, database):
+        """What a fresh database has after one load, row by row."""
+        fresh = database + '_fresh'
+        self.server.sql('postgres', f'DROP DATABASE IF EXISTS {fresh}')
+        self.publish(source, self.server.database(fresh))
+        self.assertEqual(self.tables(database), self.tables(fresh))
+        for table in sorted(self.tables(fresh)):
+            self.assertEqual(self.rows(database, table), self.rows(fresh, table), table)
+        return fresh
+
+    def test_twenty_nights_equal_a_fresh_load(self):
+        rng, map_ = random.Random(17), Map(read_xml(SAMPLE))
+        connection = self.server.database('nights')
+        folder = self.region('nights', LIMITS_OFF + f'[build]\nformats = "gpkg"\nreport = false\nsurroundings = "on"\n[publish]\npostgis = "{connection}"\n')
+        env = self.server.environment
+        self.update(folder, map_.write(self.path('nights.osm')), env=env)
+        self.assertLessEqual(LAYERS | {'blockrand_build', 'blockrand_files'}, self.tables('nights'))
+        kept = {r[0]: r[1] for r in self.server.sql('nights', 'SELECT id, fid FROM blockrand.buildings')}
+        written = []
+        for night in range(20):
+            map_.random_edits(rng, rng.choice([1, 2, 8]))
+            self.update(folder, map_.write_changes(self.path(f'n{night}.osc')), env=env)
+            figures = read_json(folder, 'outward', 'last.json')['parts'][0]['figures']
+            written.append((figures['rows inserted'], figures['rows unchanged']))
+        self.same_as_fresh(folder, 'nights')
+        self.equals_the_geopackage('nights', os.path.join(self.current(folder), 'buildings.gpkg'))
+        self.assertTrue(any(0 < inserted < unchanged for inserted, unchanged in written), f'rows that did not change are not written: {written}')
+        now = {r[0]: r[1] for r in self.server.sql('nights', 'SELECT id, fid FROM blockrand.buildings')}
+        self.assertGreater(sum(now.get(i) == f for i, f in kept.items()), len(kept) // 4, 'unchanged rows keep their fid')
+        build = self.server.sql('nights', 'SELECT name, number, crs FROM blockrand.blockrand_build')
+        self.assertEqual(build, [['nights', str(int(os.path.basename(self.current(folder)))), 'EPSG:25832']])
+        # Nothing new: no file is read.
+        figures = self.publish(folder, connection)
+        self.assertEqual((figures['GeoPackages read'], figures['rows inserted']), (0, 0))
+        # Back to the build before.
+        blockrand('rollback', folder)
+        self.publish(folder, connection)
+        self.same_as_fresh(folder, 'nights')
+
+    def equals_the_geopackage(self, database, path):
+        """Values and geometries of the table are those of the file."""
+        with contextlib.closing(sqlite3.connect(path)) as file:
+            for table in sorted(LAYERS):
+                columns = [r[1] for r in file.execute(f'PRAGMA table_info("{table}")') if r[1] not in ('fid', 'geom')]
+                of_file = {}
+                for row in file.execute('SELECT ' + ', '.join(f'"{c}"' for c in columns) + f', geom FROM "{table}"'):
+                    of_file[row[columns.index('id')]] = row
+                listed = ', '.join(f'"{c}"::text' for c in columns)
+                there = self.server.sql(database, f'SELECT {listed}, encode(ST_AsBinary(geom, \'NDR\'), \'hex\') FROM blockrand."{table}"')
+                self.assertEqual(len(there), len(of_file), table)
+                for row in there:
+                    for name, text, value in zip(columns, row, of_file[row[columns.index('id')]]):
+                        if isinstance(value, float):
+                            self.assertEqual(float(text), value, (table, name))
+                        else:
+                            self.assertEqual(text, '' if value is None else str(value), (table, name))
+                    blob = of_file[row[columns.index('id')]][-1]
+                    if blob is None:
+                        self.assertEqual(row[-1], '')
+                    else:
+                        envelope = (0, 32, 48, 48, 64)[blob[3] >> 1 & 7]
+                        self.assertEqual(row[-1], blob[8 + envelope:].hex(), (table, row[0]))
+
+    def test_areas(self):
+        source = extract('monaco-2021.osm.pbf')
+        if not source:
+            self.skipTest('the shared data is absent')
+        build = self.build(source, 'areas', '--areas', '13', '--formats', 'gpkg', '--no-report')
+        connection = self.server.database('areas')
+        figures = self.publish(build, connection)
+        areas = set(read_json(build, 'build.json')['areas'])
+        self.assertEqual(figures['GeoPackages read'], len(areas))
+        self.assertEqual({r[0] for r in self.server.sql('areas', 'SELECT DISTINCT blockrand_area FROM blockrand.buildings')}, areas)
+        # The same at once: rows of areas go, and there are as many buildings.
+        count = self.server.sql('areas', 'SELECT count(*), count(DISTINCT id) FROM blockrand.buildings')
+        whole = self.build(source, 'whole', '--formats', 'gpkg', '--no-report')
+        self.publish(whole, connection)
+        self.assertEqual(self.server.sql('areas', 'SELECT DISTINCT blockrand_area FROM blockrand.buildings'), [['']])
+        self.assertEqual(self.server.sql('areas', 'SELECT count(*), count(DISTINCT id) FROM blockrand.buildings'), count)
+        self.same_as_fresh(whole, 'areas')
+
+    def test_tables_that_differ(self):
+        """Columns of a newer program, tables that somebody removed, changed or made."""
+        build = self.build(SAMPLE, 'drift', '--formats', 'gpkg', '--no-report')
+        connection, sql = self.server.database('drift'), lambda text: self.server.sql('drift', text)
+        self.publish(build, connection)
+        indices = {r[0] for r in sql("SELECT indexdef FROM pg_indexes WHERE schemaname = 'blockrand' AND tablename = 'buildings'")}
+        self.assertTrue(any('gist' in i for i in indices), indices)
+        self.assertIn('Area of the footprint', sql("SELECT col_description('blockrand.buildings'::regclass, attnum) FROM pg_attribute WHERE "
+                                                   "attrelid = 'blockrand.buildings'::regclass AND attname = 'footprint_area'")[0][0])
+        self.assertEqual(sql('SELECT Find_SRID(\'blockrand\', \'buildings\', \'geom\')'), [['25832']])
+        # As if an older program had made the tables: a column less, another one more.
+        sql("ALTER TABLE blockrand.buildings DROP COLUMN footprint_area, ADD COLUMN old_one text; "
+            "UPDATE blockrand.buildings SET blockrand_row = 0; UPDATE blockrand.blockrand_files SET sha256 = 'x'")
+        run = blockrand('publish', build, '--postgis', connection, env=self.server.environment)
+        self.assertEqual(run.code, 0, run)
+        self.assertIn('1 columns added', run.out)
+        self.assertIn('no column old_one any more', run.err)
+        sql('ALTER TABLE blockrand.buildings DROP COLUMN old_one')
+        self.same_as_fresh(build, 'drift')
+        # A table that was removed is made and loaded, though its file did not change.
+        sql('DROP TABLE blockrand.parts')
+        self.assertEqual(self.publish(build, connection)['tables made'], 1)
+        self.same_as_fresh(build, 'drift')
+        # Another type.
+        sql("ALTER TABLE blockrand.buildings ALTER COLUMN storeys TYPE real USING 0; UPDATE blockrand.blockrand_files SET sha256 = 'x'")
+        self.refused(self.publish(build, connection, code=1), 1, 'column storeys', 'DROP TABLE "blockrand"."buildings"')
+        sql('DROP TABLE blockrand.buildings')
+        self.publish(build, connection)
+        self.same_as_fresh(build, 'drift')
+        # Somebody's table of that name; another schema.
+        sql('DROP TABLE blockrand.blocks; CREATE TABLE blockrand.blocks (a integer)')
+        self.refused(self.publish(build, connection, code=1), 1, 'did not make it')
+        self.publish(build, connection, '--schema', 'Other one')
+        self.assertEqual(self.rows('drift', 'buildings', 'Other one'), self.rows('drift', 'buildings'))
+        # Another reference system.
+        other = self.build(SAMPLE, 'drift_crs', '--formats', 'gpkg', '--no-report', '--crs', 'EPSG:25833')
+        self.refused(self.publish(other, connection, '--schema', 'Other one', code=1), 1, 'EPSG:25832', 'EPSG:25833')
+
+    def test_what_fails_changes_nothing(self):
+        build = self.build(SAMPLE, 'fails', '--formats', 'gpkg', '--no-report')
+        connection = self.server.database('fails')
+        self.publish(build, connection)
+        before = {t: self.rows('fails', t) for t in self.tables('fails')}
+        # A rule of the database that the rows of another build break, far into the load.
+        self.server.sql('fails', "ALTER TABLE blockrand.tiles ADD CONSTRAINT few CHECK (buildings < 0) NOT VALID")
+        map_ = Map(read_xml(SAMPLE))
+        map_.random_edits(random.Random(2), 40)
+        other = self.build(map_.write(self.path('fails.osm')), 'fails_other', '--formats', 'gpkg', '--no-report')
+        self.refused(self.publish(other, connection, code=4), 4, 'stays as it was')
+        self.assertEqual({t: self.rows('fails', t) for t in self.tables('fails')}, before)
+        # No PostGIS; no such database; a wrong password, said in the connection or by the environment.
+        plain = self.server.database('plain', postgis=False)
+        self.refused(self.publish(build, plain, code=1), 1, 'CREATE EXTENSION postgis')
+        self.refused(self.publish(build, self.server.connection('nowhere'), code=4), 4, 'nowhere')
+        wrong = connection + ' password=hush-hush-wrong'
+        run = self.publish(build, wrong, code=4, env={})
+        self.assertIn('password=***', run.err)
+        self.publish(build, connection + " password='hush-hush'", env={})
+        self.assertNotIn('hush', json.dumps(read_json(build + '.outward', 'last.json')))
+
+
+if __name__ == '__main__':
+    main()
