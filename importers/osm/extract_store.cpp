@@ -119,7 +119,11 @@ std::vector<ChangedObject> ExtractStore::changes_since(const ExtractStore& befor
     const CellEntry* cell = state.find(tile);
     if (!cell) return versions;
     state.for_each({cell}, {}, osmium::osm_entity_bits::nwr, [&](const OSMObject& object) {
-      Version version{told(object), told_place(object), {}, interest_of(type_of(object.type()), object), false};
+      Version version{told(object),
+                      told_place(object),
+                      {},
+                      interest_of(type_of(object.type()), object, state.index.figures.surroundings),
+                      false};
       if (object.type() == osmium::item_type::node) {
         const model::Location at = position_of(static_cast<const osmium::Node&>(object).location());
         if (is_known(at)) version.box.add(at);

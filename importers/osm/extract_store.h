@@ -23,6 +23,7 @@ struct StoreFigures {
   std::uint64_t bytes = 0;                            ///< of the store on disk
   std::uint64_t node_bytes = 0;                       ///< of the places of nodes while it was written
   bool cleaned_texts = false;                         ///< NUL characters were replaced
+  bool surroundings = false;  ///< objects that only the surroundings of houses are made of are in it as well
 };
 
 /// An area of the quadtree that objects touch, with or without buildings.
@@ -59,11 +60,12 @@ bool tells_look(std::string_view key);
 /// Memory: relations with their members, the boxes of their ways, 64 MB of objects on their way to the disk and as much of nodes;
 /// nothing that grows with the buildings but 150 bytes for each cell of about a square mile.
 /// \param folder  is made; what is there of an earlier store is replaced
+/// \param surroundings  objects that only the surroundings of houses are made of, too (Interest::surroundings)
 /// \returns false where the extract is not sorted by type and id, or has several versions of an object: apply_changes() without
 ///          changes makes such a one of it
 /// \throws base::InputError   as read_extract
 /// \throws base::OutputError  the store cannot be written
-bool write_store(const std::string& extract, const std::string& folder);
+bool write_store(const std::string& extract, const std::string& folder, bool surroundings = false);
 
 /// What spans more cannot be what stands around one area: what holds the area as a whole is told to it (RegionFacts::areas). Degrees.
 inline constexpr double kWholeSpan = 1.0;

@@ -99,6 +99,8 @@ class StoreUpdater {
   }
 
  private:
+  bool surroundings() const { return old_.index.figures.surroundings; }
+
   // ---- where nodes are, and were
 
   model::Location place_before(std::int64_t node) {
@@ -148,7 +150,9 @@ class StoreUpdater {
       const auto cell = [&](const model::Location& place) {
         return std::set<TileId>{is_known(place) ? georef_cell(place) : nowhere()};
       };
-      const auto kept = [](const OSMObject* o) { return o && is_kept(interest_of(model::OsmType::node, *o)); };
+      const auto kept = [this](const OSMObject* o) {
+        return o && is_kept(interest_of(model::OsmType::node, *o, surroundings()));
+      };
       if (kept(change.before)) take(cell(was), Kind::node, key.id);
       if (kept(change.after)) {
         Box box;
@@ -228,7 +232,7 @@ class StoreUpdater {
       is_.members.relations.erase(key.id);
       if (!change.after) continue;
       const auto& relation = static_cast<const osmium::Relation&>(*change.after);
-      if (!kept_as(relation, interest_of(model::OsmType::relation, relation))) continue;
+      if (!kept_as(relation, interest_of(model::OsmType::relation, relation, surroundings()))) continue;
       StoredRelation& kept = is_.members.relations[key.id];
       for (const osmium::RelationMember& m : relation.members()) {
         if (m.type() == osmium::item_type::way) kept.ways.push_back(m.ref());
@@ -277,7 +281,7 @@ class StoreUpdater {
       const OSMObject* same = stored == stored_ways_.end() ? nullptr : stored->second;
       const OSMObject *before = change ? change->before : same, *after = change ? change->after : same;
       const auto kept = [&](const OSMObject* o, const Members& members) {
-        return o && (members.ways.contains(id) || is_kept(interest_of(model::OsmType::way, *o)));
+        return o && (members.ways.contains(id) || is_kept(interest_of(model::OsmType::way, *o, surroundings())));
       };
       if (kept(before, was_.members)) {
         Box box;

@@ -9,7 +9,7 @@
 
 namespace blockrand::importers::osm {
 
-/// Makes the store that write_store would make of an extract, from that of the extract before; places of objects within the file apart.
+/// Makes the store that write_store would make of an extract with the same objects of surroundings as the one before, from that of the extract before; places of objects within the file apart.
 /// \param before   its files, in the order of kStoreFiles
 /// \param changes  every object that is another one now (apply_changes)
 /// \param extract  as it is now: asked for ways that nothing kept so far

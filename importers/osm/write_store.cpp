@@ -131,6 +131,8 @@ class StoreWriter {
   Index& index() { return index_; }
 
  private:
+  bool surroundings() const { return index_.figures.surroundings; }
+
   /// Counts it, and whether the file is in order.
   bool visit(const OSMObject& object, std::uint64_t& count) {
     const auto order = std::make_tuple(object.type(), object.id() >= 0, std::abs(object.id()));
@@ -147,7 +149,7 @@ class StoreWriter {
                    [&](const OSMObject& object) {
                      if (!visit(object, index_.figures.relations)) return;
                      const auto& relation = static_cast<const osmium::Relation&>(object);
-                     if (!kept_as(relation, interest_of(model::OsmType::relation, object))) return;
+                     if (!kept_as(relation, interest_of(model::OsmType::relation, object, surroundings()))) return;
                      StoredRelation& kept = members_.relations[object.id()];
                      for (const osmium::RelationMember& m : relation.members()) {
                        if (m.type() == osmium::item_type::way) kept.ways.push_back(m.ref()), members_.ways[m.ref()];
@@ -179,7 +181,7 @@ class StoreWriter {
     }
     const model::Location at = position_of(static_cast<const osmium::Node&>(object).location());
     nodes_.add(object.id(), at);
-    if (!is_kept(interest_of(model::OsmType::node, object))) return;
+    if (!is_kept(interest_of(model::OsmType::node, object, surroundings()))) return;
     cells_.clear();
     cells_.insert(is_known(at) ? georef::tile_of(at, kFinest) : nowhere());
     Box box;
@@ -207,7 +209,7 @@ class StoreWriter {
 
   void read_way(const OSMObject& object) {
     const bool alive = visit(object, index_.figures.ways);
-    const Interest interest = interest_of(model::OsmType::way, object);
+    const Interest interest = interest_of(model::OsmType::way, object, surroundings());
     const auto of_relation = members_.ways.find(object.id());
     if (!alive || (!is_kept(interest) && of_relation == members_.ways.end())) return;
     Box box;
@@ -278,12 +280,13 @@ class StoreWriter {
 
 }  // namespace
 
-bool write_store(const std::string& extract, const std::string& folder) {
+bool write_store(const std::string& extract, const std::string& folder, bool surroundings) {
   OsmFile file(extract);
   bool cleaned = false;
   for (;;) try {
       StoreWriter writer(file, folder);
       writer.index().figures.cleaned_texts = cleaned;
+      writer.index().figures.surroundings = surroundings;
       return writer.write();
     } catch (const NulInText&) {
       if (cleaned)

@@ -33,11 +33,12 @@ std::uint64_t divide(const BuildOptions& options, const std::string& work, const
         why = "it is damaged";
       }
     fs::remove_all(store, error);  // what was begun may be links to files of the earlier one
-    if (!importers::osm::write_store(options.input, store)) {
+    if (!importers::osm::write_store(options.input, store, options.surroundings.any())) {
       const importers::osm::AppliedChanges applied = importers::osm::apply_changes(options.input, {}, sorted);
       if (applied.cleaned_texts)
         child.warn(told_input(options) + ": NUL characters in its texts were replaced; reports do not repeat that");
-      if (!importers::osm::write_store(sorted, store)) throw std::logic_error("a sorted extract is not sorted");
+      if (!importers::osm::write_store(sorted, store, options.surroundings.any()))
+        throw std::logic_error("a sorted extract is not sorted");
       fs::remove(sorted, error);
     }
     return why;

@@ -83,6 +83,40 @@ TEST(ExtractStore, AreasOfRealExtractsReadAsTheWholeSays) {
   EXPECT_GT(compared, 20);
 }
 
+TEST(ExtractStore, WhatOnlySurroundingsAreMadeOfIsThereWhereItIsAskedFor) {
+  const TempFolder folder;
+  const auto town = [&](const std::string& name, bool with_another_lamp) {
+    OsmText text;
+    text.corners(1, 0, 0, 1).corners(11, 40, 0, 1);
+    text.node(21, 11, 51, {{"highway", "street_lamp"}}).node(22, 11, 51.0001, {{"natural", "tree"}});
+    if (with_another_lamp) text.node(23, 11.0002, 51, {{"highway", "street_lamp"}});
+    text.way(1, {1, 2, 3, 4, 1}, {{"building", "yes"}}).way(2, {11, 12}, {{"power", "line"}});
+    return folder.write(name, text.xml());
+  };
+  const std::string extract = town("a.osm", false), later = town("b.osm", true);
+  for (const bool surroundings : {false, true}) {
+    SCOPED_TRACE(surroundings);
+    ASSERT_TRUE(write_store(extract, folder.path("store"), surroundings));
+    const ExtractStore store(folder.path("store"));
+    EXPECT_EQ(store.figures().surroundings, surroundings);
+    ReadOptions all;
+    all.surroundings = surroundings;
+    std::set<model::OsmId> found;
+    for (const model::Feature& f : store.read(all, false).features) found.insert(f.id);
+    std::set<model::OsmId> wanted{{model::OsmType::node, 22}};
+    if (surroundings) wanted.insert({{model::OsmType::node, 21}, {model::OsmType::way, 2}});
+    EXPECT_EQ(found, wanted);
+  }
+  // A lamp that came is a change of the one store, and none of the other.
+  for (const bool surroundings : {false, true}) {
+    ASSERT_TRUE(write_store(extract, folder.path("before"), surroundings));
+    ASSERT_TRUE(write_store(later, folder.path("after"), surroundings));
+    const auto changes = ExtractStore(folder.path("after")).changes_since(ExtractStore(folder.path("before")));
+    ASSERT_EQ(changes.size(), surroundings ? 1u : 0u);
+    for (const ChangedObject& change : changes) EXPECT_NE(change.kinds, 0u);
+  }
+}
+
 TEST(ExtractStore, AnUnsortedFileIsRefused) {
   const TempFolder folder;
   OsmText text;

@@ -237,14 +237,15 @@ TEST(UpdateStore, NightsAtRandomGiveWhatIsWrittenAnew) {
     const TempFolder folder;
     std::string data = folder.path("0.osm.pbf"), store = folder.path("store0");
     apply_changes(folder.write("base.osm", world.base()), {}, data);
-    ASSERT_TRUE(write_store(data, store));
+    const bool surroundings = seed % 2 == 0;
+    ASSERT_TRUE(write_store(data, store, surroundings));
     for (int night = 1; night <= 25; ++night) {
       SCOPED_TRACE(fmt::format("seed {}, night {}", seed, night));
       const std::string number = std::to_string(night), fresh = folder.path(number + ".osm.pbf");
       const std::shared_ptr<ChangedObjects> changes = no_changed_objects();
       apply_changes(data, std::vector{folder.write(number + ".osc", world.night())}, fresh, nullptr, changes.get());
       const std::string anew = folder.path("anew" + number), updated = folder.path("store" + number);
-      ASSERT_TRUE(write_store(fresh, anew));
+      ASSERT_TRUE(write_store(fresh, anew, surroundings));
       const std::string reason = update_store(files_of(store), *changes, fresh, updated);
       ++(reason.empty() ? brought : written);
       ++why[reason];
