@@ -92,9 +92,9 @@ bool ClaimFinder::crosses_traffic(const BridgeRun& run) const {
         if (p.x < claim.box.minimum.x || p.x > claim.box.maximum.x || p.y < claim.box.minimum.y ||
             p.y > claim.box.maximum.y)
           continue;
-        if (!geometry::claim_holds(claim, p)) continue;
         using enum GroundClass;
         const GroundLabel& label = claims.labels[claim.label];
+        if (!geometry::claim_holds(claim, p) || !counts_in(square_of(p), claim, label)) continue;
         if (!label.building && (label.ground == carriageway || label.ground == parking_lane ||
                                 label.ground == rail_bed || label.ground == cycle_way || label.ground == footway))
           return true;

@@ -1,11 +1,26 @@
 // What ClaimFinder knows of single nodes and places.
 #include <algorithm>
+#include <cmath>
 
 #include "pipeline/surroundings/ground_claims.h"
 
 namespace blockrand::surroundings {
 
 using model::Point2;
+
+bool counts_in(SquareIndex square, const geometry::AreaClaim& claim, const GroundLabel& label) {
+  if (!label.wide) return true;
+  const Point2 middle = box_of(square).centre();
+  for (const std::vector<Point2>& ring : claim.rings)
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Point2 a = ring[i], b = ring[(i + 1) % ring.size()];
+      const double dx = b.x - a.x, dy = b.y - a.y, length = dx * dx + dy * dy;
+      const double t =
+          length > 0 ? std::clamp(((middle.x - a.x) * dx + (middle.y - a.y) * dy) / length, 0.0, 1.0) : 0.0;
+      if (std::hypot(middle.x - a.x - t * dx, middle.y - a.y - t * dy) <= kWideReach) return true;
+    }
+  return false;
+}
 
 std::size_t ClaimFinder::streets_at(std::int64_t node) const {
   const auto [first, last] = std::ranges::equal_range(street_nodes_, node);

@@ -118,12 +118,16 @@ ClaimFinder::ClaimFinder(const SurroundingInputs& inputs) : in_(inputs) {
     const std::optional<SurroundingKind> kind = kind_of(feature, tag, in_.catalogue);
     if (!kind) continue;
     Thing thing{f, *kind, hidden_state(feature, tag)};
-    PlanBox box;
+    PlanBox box, degrees;
     for (const model::MappedRing& ring : e.rings_of(feature.rings))
       for (const model::Location at : e.vertices_of(ring)) {
+        constexpr double kUnit = 1e-7;
+        degrees.include(Point2{kUnit * at.lon, kUnit * at.lat});
         const Point2 p = in_.projection.forward(at);
         if (std::isfinite(p.x) && std::isfinite(p.y)) box.include(p);
       }
+    thing.wide = feature.area && !degrees.empty() &&
+                 std::max(degrees.maximum.x - degrees.minimum.x, degrees.maximum.y - degrees.minimum.y) > kWidest;
     if (const double reach = reach_of(*kind, feature, tag); reach > 0 && !box.empty()) {
       box.minimum = {box.minimum.x - reach, box.minimum.y - reach};
       box.maximum = {box.maximum.x + reach, box.maximum.y + reach};
@@ -369,7 +373,8 @@ void ClaimFinder::add_area(const Thing& thing, std::vector<Entry>& out) const {
   entry.label = {.ground = rule->ground,
                  .object = in_.extract.features[thing.feature].id,
                  .material = tagged.value_or(in_.catalogue.material(rule->material)),
-                 .trees_per_hectare = static_cast<float>(rule->trees_per_hectare)};
+                 .trees_per_hectare = static_cast<float>(rule->trees_per_hectare),
+                 .wide = thing.wide};
   if (rule->ground == GroundClass::water) entry.label.offset = -kBank;
   // Of area:highway the value is the class of its street.
   const std::string_view street = tag(osm_key::kAreaHighway);

@@ -16,6 +16,7 @@
 #include "pipeline/model/extract.h"
 #include "pipeline/model/surroundings.h"
 #include "pipeline/surroundings/catalogue.h"
+#include "pipeline/surroundings/ground_height.h"
 #include "pipeline/surroundings/kinds.h"
 #include "pipeline/surroundings/street_controls.h"
 
@@ -36,6 +37,7 @@ struct Thing {
   std::uint32_t feature = 0;  ///< index into Extract::features
   SurroundingKind kind = SurroundingKind::other;
   std::optional<model::SurroundingState> hidden;
+  bool wide = false;  ///< an area that spans more than kWidest
 };
 
 /// Whose a piece of ground is.
@@ -48,6 +50,7 @@ struct GroundLabel {
   /// m above the height reference: level ground, whatever the terrain does below it.
   std::optional<double> level = std::nullopt;
   float trees_per_hectare = 0;
+  bool wide = false;  ///< Thing::wide: counts_in says where it counts
 };
 
 /// Claims of the ground of some squares, the strongest first, and whose they are.
@@ -60,6 +63,10 @@ struct GroundClaims {
 /// of a wall of a canal at least.
 inline constexpr float kKerb = 0.12f, kBank = 0.5f;
 
+/// Degrees: an area that spans more claims ground near its lines alone, as far as kWideReach. Whoever reads a part of an extract (a tile
+/// alone, an area: 3 km) knows it where its lines come near, and nowhere else (importers::osm::kWholeSpan).
+inline constexpr double kWidest = 1, kWideReach = 2000;
+
 /// m: longer runs of bridges are not put together: what a tile sees of its bridges lies within reach.
 inline constexpr double kMostRun = 2000;
 /// m: runs whose crossings are looked for; longer ones cross something.
@@ -69,6 +76,9 @@ inline constexpr double kApproach = 8;
 
 /// m: how far from its line the ground of a street reaches at most, and buildings stand that make a street one of a town.
 inline constexpr double kStreetReach = 40, kBuiltUpReach = 25;
+
+/// Whether a claim counts in a square: one that is wide does where its lines are near the square's middle.
+bool counts_in(SquareIndex square, const geometry::AreaClaim& claim, const GroundLabel& label);
 
 /// Finds what claims the ground of a place. Read-only once made, safe to share between threads.
 class ClaimFinder {

@@ -5,8 +5,16 @@
 
 namespace blockrand::surroundings {
 
+SurroundingOptions SurroundingOptions::settled(int lod) const {
+  if (!automatic) return *this;
+  return lod >= 3 ? SurroundingOptions{true, true, true} : SurroundingOptions{};
+}
+
+SurroundingOptions usual_surroundings() { return {}; }
+
 SurroundingOptions parse_surroundings(const std::string& text) {
   if (text == "off") return {};
+  if (text == "auto") return {.automatic = true};
   if (text == "on") return {true, true, true};
   SurroundingOptions out;
   for (const std::string& layer : base::split(text, ',')) {
@@ -18,7 +26,7 @@ SurroundingOptions parse_surroundings(const std::string& text) {
       out.objects = true;
     } else {
       throw base::ValueError(base::in_quotes(layer) + " is no layer of the surroundings",
-                             "Write on, off, or some of ground, bodies, objects with commas between them.");
+                             "Write auto, on, off, or some of ground, bodies, objects with commas between them.");
     }
   }
   return out;
@@ -26,6 +34,7 @@ SurroundingOptions parse_surroundings(const std::string& text) {
 
 std::string show_surroundings(const SurroundingOptions& options) {
   if (options == SurroundingOptions{}) return "off";
+  if (options.automatic) return "auto";
   if (options == SurroundingOptions{true, true, true}) return "on";
   std::string out;
   const auto add = [&](bool is, const char* name) {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "pipeline/georef/tiles.h"
-#include "pipeline/model/osm_keys.h"
+#include "pipeline/surroundings/account.h"
 #include "pipeline/surroundings/ground_surfaces.h"
 #include "pipeline/surroundings/line_bodies.h"
 #include "pipeline/surroundings/placing.h"
@@ -30,44 +30,6 @@ Point2 middle_of(const std::vector<std::vector<Point2>>& lines) {
   for (const auto& line : lines)
     for (const Point2 p : line) box.include(p);
   return box.empty() ? Point2{} : model::snap(box.centre());
-}
-
-/// Whether a layer is asked for that a thing of a kind is in: of others nothing is told.
-bool is_asked(SurroundingKind kind, const SurroundingOptions& layers) {
-  using enum SurroundingKind;
-  switch (kind) {
-    case road:
-    case railway:
-      return layers.ground || layers.bodies;
-    case aeroway:
-    case parking:
-    case water:
-    case pool:
-    case golf:
-    case pitch:
-    case surface_area:
-      return layers.ground;
-    case bicycle_parking:
-      return layers.ground || layers.objects;
-    case barrier:
-      return layers.bodies || layers.objects;
-    case bridge:
-    case cliff:
-      return layers.bodies;
-    case power:
-      return layers.objects || layers.bodies;
-    case wind_turbine:
-    case mast:
-    case tree:
-    case street_furniture:
-    case traffic_sign:
-      return layers.objects;
-    case aerialway:
-    case tunnel:
-    case other:
-      return true;
-  }
-  return true;
 }
 
 /// Whether a thing comes into squares: one of its points, or of points every few metres between them; an area also where it only
@@ -95,11 +57,19 @@ bool comes_to(const std::vector<std::vector<Point2>>& lines, bool area, const Pl
   return geometry::claim_holds(claim, box_of(*squares.begin()).centre());
 }
 
-PlanBox with_margin(const PlanBox& box) {
+PlanBox grown(const PlanBox& box, double by) {
   PlanBox out;
-  out.minimum = {box.minimum.x - kLongest, box.minimum.y - kLongest};
-  out.maximum = {box.maximum.x + kLongest, box.maximum.y + kLongest};
+  out.minimum = {box.minimum.x - by, box.minimum.y - by};
+  out.maximum = {box.maximum.x + by, box.maximum.y + by};
   return out;
+}
+
+bool found_at(Point2 p, const geometry::AreaClaim& claim, const GroundLabel& label, GroundAt& found) {
+  if (!geometry::claim_holds(claim, p) || !counts_in(square_of(p), claim, label)) return false;
+  found.building = label.building;
+  found.ground = label.ground;
+  found.height = label.level.value_or(found.height) + static_cast<double>(label.offset);
+  return true;
 }
 
 /// Where a mapped thing stands that the carriageway, as wide as it is assumed to be, has swallowed: at the nearest kerb, if that is near.
@@ -131,6 +101,23 @@ Point2 beside_traffic(Point2 place, std::string_view kind, const GroundAtPlace& 
 }
 
 }  // namespace
+
+/// Heights of the ground of squares that are made when they are asked for.
+class SurroundingsFinder::Heights {
+ public:
+  Heights(const HeightAt& height, double level) : height_(height), level_(level) {}
+  const SquareGround& of(SquareIndex square) {
+    const auto known = squares_.find(square);
+    return known != squares_.end() ? known->second
+                                   : squares_.try_emplace(square, square, height_, level_).first->second;
+  }
+  double at(Point2 place) { return of(square_of(place)).at(place); }
+
+ private:
+  const HeightAt& height_;
+  double level_ = 0;
+  std::map<SquareIndex, SquareGround> squares_;
+};
 
 SurroundingsFinder::SurroundingsFinder(const SurroundingInputs& inputs, SurroundingOptions layers, HeightAt height,
                                        double level, std::uint64_t seed)
@@ -169,7 +156,7 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
   const std::set<SquareIndex> own(squares.begin(), squares.end());
   const auto is_own = [&](Point2 p) { return own.contains(square_of(p)); };
 
-  GroundClaims claims = claims_.claims_in(with_margin(box));
+  GroundClaims claims = claims_.claims_in(grown(box, kLongest));
   set_levels(claims);
   const geometry::BoxIndex claim_boxes([&] {
     std::vector<PlanBox> boxes;
@@ -197,7 +184,7 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
     const model::Feature& feature = in_.extract.features[thing.feature];
     thing_of[feature.id] = t;
     const std::vector<std::vector<Point2>> lines = claims_.lines_of(thing);
-    if (is_asked(thing.kind, layers_) && comes_to(lines, feature.area, box, own)) {
+    if (is_asked(thing.kind, layers_) && comes_to(lines, feature.area && !thing.wide, box, own)) {
       kinds[feature.id] = thing.kind;
       states[feature.id] = thing.hidden.value_or(SurroundingState::not_modelled);
     }
@@ -233,12 +220,14 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
                                    : TagOf([](std::string_view) { return std::string_view(); });
   };
   // The ground, square by square.
-  std::map<SquareIndex, SquareGround> grounds;
+  Heights heights(height_, level_);
   for (const SquareIndex square : squares) {
-    const SquareGround& ground = grounds.try_emplace(square, square, height_, level_).first->second;
+    const SquareGround& ground = heights.of(square);
     GroundClaims of_square;
     of_square.labels = claims.labels;
-    for (const std::uint32_t c : claim_boxes.near(box_of(square), 1)) of_square.claims.push_back(claims.claims[c]);
+    for (const std::uint32_t c : claim_boxes.near(box_of(square), 1))
+      if (counts_in(square, claims.claims[c], claims.labels[claims.claims[c].label]))
+        of_square.claims.push_back(claims.claims[c]);
     if (of_square.claims.empty()) continue;
     std::vector<SquareSurface> surfaces = ground_surfaces(square, ground, of_square, land);
     const auto is_mapped = [&](const SquareSurface& s) { return s.label < claims.labels.size(); };
@@ -256,40 +245,17 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
       for (SquareSurface& s : surfaces) out.surfaces.push_back(std::move(s.surface));
   }
 
-  const auto height_at = [&](Point2 p) {
-    const SquareIndex square = square_of(p);
-    const auto known = grounds.find(square);
-    return (known != grounds.end() ? known->second : grounds.try_emplace(square, square, height_, level_).first->second)
-        .at(p);
-  };
-  const auto found_at = [&](Point2 p, const geometry::AreaClaim& claim, const GroundLabel& label, GroundAt& found) {
-    if (!geometry::claim_holds(claim, p)) return false;
-    found.building = label.building;
-    found.ground = label.ground;
-    found.height = label.level.value_or(found.height) + static_cast<double>(label.offset);
-    return true;
-  };
   const GroundAtPlace ground_at = [&](Point2 p) {
     PlanBox at;
     at.include(p);
-    GroundAt found{false, model::GroundClass::land, height_at(p)};
+    GroundAt found{false, model::GroundClass::land, heights.at(p)};
     for (const std::uint32_t c : claim_boxes.near(at, 0))  // the strongest first
       if (found_at(p, claims.claims[c], claims.labels[claims.claims[c].label], found)) break;
     return found;
   };
-  // Anywhere: claims are found anew, which is slow.
-  const GroundAtPlace ground_anywhere = [&](Point2 p) {
-    PlanBox at;
-    at.include(p);
-    GroundAt found{false, model::GroundClass::land, height_at(p)};
-    GroundClaims there = claims_.claims_in(at);
-    set_levels(there);
-    for (const geometry::AreaClaim& claim : there.claims)
-      if (found_at(p, claim, there.labels[claim.label], found)) break;
-    return found;
-  };
+  const GroundAtPlace anywhere = [&](Point2 p) { return ground_anywhere(p, heights); };
   // Of the squares of a run's ends alone: a run leads far beyond the tile.
-  const std::function<double(Point2)> run_height = [&](Point2 p) { return height_at(p); };
+  const std::function<double(Point2)> run_height = [&](Point2 p) { return heights.at(p); };
   for (PlannedObject& object : planned) {
     if (!is_own(object.place)) continue;
     if (const auto thing = thing_of.find(object.object.object); thing != thing_of.end())
@@ -326,7 +292,7 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
       const Thing& thing = claims_.things()[t];
       const model::OsmId id = in_.extract.features[thing.feature].id;
       std::vector<model::SurroundingBody> bodies = thing.hidden ? portal_bodies(site, thing) : line_bodies(site, thing);
-      if (auto wires = wire_bodies(site, thing, ground_anywhere)) bodies.push_back(std::move(*wires));
+      if (auto wires = wire_bodies(site, thing, anywhere)) bodies.push_back(std::move(*wires));
       if (!bodies.empty()) states[id] = SurroundingState::modelled, kinds[id] = thing.kind;
       for (model::SurroundingBody& body : bodies) out.bodies.push_back(std::move(body));
     }
@@ -367,35 +333,78 @@ void SurroundingsFinder::set_levels(GroundClaims& claims) const {
   }
 }
 
+GroundAt SurroundingsFinder::ground_anywhere(Point2 place, Heights& heights) const {
+  PlanBox at;
+  at.include(place);
+  GroundAt found{false, model::GroundClass::land, heights.at(place)};
+  GroundClaims there = claims_.claims_in(at);
+  set_levels(there);
+  for (const geometry::AreaClaim& claim : there.claims)
+    if (!claim.right_of_lines && !there.labels[claim.label].wide &&
+        found_at(place, claim, there.labels[claim.label], found))
+      break;
+  return found;
+}
+
 void SurroundingsFinder::pack(model::TileId tile, base::Packer& out) const {
   const std::vector<SquareIndex> squares = squares_of(tile);
   if (squares.empty()) return;
   PlanBox box;
   for (const SquareIndex s : squares) box.include(box_of(s));
-  const model::Extract& e = in_.extract;
-  for (const std::uint32_t t : claims_.things_near(box, kSurroundingsReach)) {
-    const model::Feature& feature = e.features[claims_.things()[t].feature];
-    out << feature.id << feature.kinds << feature.area;
-    for (const model::Tag& tag : e.tags_of(feature.tags)) out << e.strings.view(tag.key) << e.strings.view(tag.value);
-    for (const model::MappedRing& ring : e.rings_of(feature.rings))
-      for (const model::Location at : e.vertices_of(ring)) out << at.lon << at.lat;
-  }
-  for (const std::uint32_t t : claims_.things_near(box, 0)) pack_wires(in_, claims_, claims_.things()[t], box, out);
-  // Bridges look along their runs, and at the ground at its ends.
-  for (const std::uint32_t t : claims_.things_near(box, 0)) {
-    const Thing& thing = claims_.things()[t];
-    const model::Feature& feature = e.features[thing.feature];
-    if (thing.kind != SurroundingKind::bridge || feature.area || thing.hidden || feature.rings.count != 1) continue;
-    const ClaimFinder::BridgeRun run = claims_.bridge_run(thing);
-    out << run.length << run.before << run.layer << run.crosses_traffic;
-    for (const Point2 p : run.line) out << p.x << p.y;
-  }
-  const GroundClaims claims = claims_.claims_in(with_margin(box));
+  for (const std::uint32_t t : claims_.things_near(box, kSurroundingsReach)) pack_thing(claims_.things()[t], box, out);
+  const GroundClaims claims = claims_.claims_in(grown(box, kSurroundingsReach));
   for (const geometry::AreaClaim& claim : claims.claims) {
     const GroundLabel& label = claims.labels[claim.label];
-    out << label.building << label.ground << label.object << label.offset;
-    for (const auto& ring : claim.rings)
-      for (const Point2 p : ring) out << p.x << p.y;
+    out << label.building << label.ground << label.object << label.material << label.offset << label.trees_per_hectare
+        << claim.right_of_lines << claim.rings;
+  }
+  if (!layers_.bodies && !layers_.objects) return;
+  Heights heights(height_, level_);
+  const std::set<SquareIndex> own(squares.begin(), squares.end());
+  const std::function<bool(Point2)> is_own = [&](Point2 p) { return own.contains(square_of(p)); };
+  const GroundAtPlace anywhere = [&](Point2 p) { return ground_anywhere(p, heights); };
+  const std::function<double(Point2)> height = [&](Point2 p) { return heights.at(p); };
+  const BodySite site{
+      .in = in_, .claims = claims_, .is_own = is_own, .around = box, .ground = anywhere, .terrain_height = height};
+  for (const std::uint32_t t : claims_.things_near(box, 0)) {
+    const Thing& thing = claims_.things()[t];
+    const model::Feature& feature = in_.extract.features[thing.feature];
+    if (feature.area || thing.hidden || feature.rings.count != 1) continue;
+    // Wires hang on what stands far away, and over houses on their way: they are their own key.
+    if (has_wires(in_, thing)) {
+      const std::optional<model::SurroundingBody> wires = wire_bodies(site, thing, anywhere);
+      out << wires.has_value();
+      if (wires) out << wires->faces;
+    }
+    // Bridges look along their runs, and at the ground at its ends.
+    if (thing.kind != SurroundingKind::bridge) continue;
+    const ClaimFinder::BridgeRun run = claims_.bridge_run(thing);
+    out << run.length << run.before << run.layer << run.crosses_traffic << run.line;
+  }
+}
+
+void SurroundingsFinder::pack_thing(const Thing& thing, const PlanBox& around, base::Packer& out) const {
+  const model::Extract& e = in_.extract;
+  const model::Feature& feature = e.features[thing.feature];
+  out << feature.id << feature.kinds << feature.area << feature.tags.count << feature.rings.count;
+  for (const model::Tag& tag : e.tags_of(feature.tags)) out << e.strings.view(tag.key) << e.strings.view(tag.value);
+  for (const model::MappedRing& ring : e.rings_of(feature.rings)) {
+    const auto vertices = e.vertices_of(ring);
+    const auto nodes = e.nodes_of(ring);
+    out << ring.inner << vertices;
+    if (feature.area && thing.kind != SurroundingKind::barrier) continue;
+    // What single nodes of lines are: junctions, crossings, gates, supports.
+    for (std::size_t i = 0; i < nodes.size() && i < vertices.size(); ++i) {
+      PlanBox at;
+      at.include(in_.projection.forward(vertices[i]));
+      if (!at.near(around, kNodeReach)) continue;
+      const StreetControl control = claims_.control_at(nodes[i]);
+      constexpr double kStreet = 2, kGate = 1;  // any two lengths
+      out << static_cast<std::uint64_t>(claims_.streets_at(nodes[i]))
+          << static_cast<std::uint64_t>(claims_.tracks_at(nodes[i])) << claims_.crossing_at(nodes[i]) << control
+          << claims_.opening_at(nodes[i], kStreet, kGate);
+      if (at.near(around, 0)) out << wire_direction(in_, claims_, nodes[i]);
+    }
   }
 }
 

@@ -5,14 +5,20 @@
 
 #include "pipeline/base/pack.h"
 #include "pipeline/model/region.h"
+#include "pipeline/surroundings/body_site.h"
 #include "pipeline/surroundings/ground_claims.h"
 #include "pipeline/surroundings/ground_height.h"
 #include "pipeline/surroundings/options.h"
 
 namespace blockrand::surroundings {
 
-/// m: how far around its squares a tile's surroundings read: streets that reach in, houses beside them.
+/// m: how far around its squares a tile's surroundings read what is mapped: pieces of bodies of 60 m, and what stands at their ends.
+/// Farther away (ARCHITECTURE.md, law 4): houses that make a street one of a town, to 280 m; blocks, to their ends; coasts, to 2 km;
+/// bridges that go on in each other, to 2 km; supports of wires, to 1.5 km, and the ground below them. Streets, lines and areas count
+/// as a whole where they come near. All of it lies within 3 km (kHalo).
 inline constexpr double kSurroundingsReach = kStreetReach + kBuiltUpReach;
+/// m: how far around its squares nodes of lines tell of anything: the ends of a piece of a street (150 m), junctions before a stop line.
+inline constexpr double kNodeReach = 250;
 
 /// Read-only once made, safe to share between threads; what it is made of outlives it.
 class SurroundingsFinder {
@@ -29,11 +35,13 @@ class SurroundingsFinder {
   /// All that `around` reads of the map, so that a tile for which it is another counts as changed.
   void pack(model::TileId tile, base::Packer& out) const;
 
-  /// What becomes of objects of which no built tile has a square: their kinds, by index of SurroundingKind.
-  const ClaimFinder& claims() const { return claims_; }
-
  private:
+  class Heights;
   std::vector<SquareIndex> squares_of(model::TileId tile) const;
+  /// The ground, wherever it is; slow: claims are found anew. The sea and areas that
+  /// are wide have none: they reach farther than what is read around a tile alone.
+  GroundAt ground_anywhere(model::Point2 place, Heights& heights) const;
+  void pack_thing(const Thing& thing, const geometry::PlanBox& around, base::Packer& out) const;
   /// GroundLabel::level of still water.
   void set_levels(GroundClaims& claims) const;
 

@@ -24,6 +24,8 @@ constexpr double kRadius = 0.03;
 constexpr double kPiece = 15, kLeastPieces = 4, kMostPieces = 12;
 /// m. A longer span has supports that nobody mapped.
 constexpr double kMostSpan = 1500;
+/// m: wires hang no farther beside the line between two supports.
+constexpr double kMostBeside = 50;
 /// m above the ground: lower wires over a building would come near its roof.
 constexpr double kOverRoofs = 12;
 /// m: the step in which places below a span are looked at.
@@ -176,6 +178,13 @@ std::optional<model::SurroundingBody> wire_bodies(const BodySite& site, const Th
   std::size_t first = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const bool end = i == 0 || i + 1 == line.size();
+    geometry::PlanBox place;
+    place.include(line[i]);
+    // Of a line that leads through a whole country, what holds a span that comes here.
+    if (!rope && !place.near(site.around, kMostSpan + kMostBeside)) {
+      from.reset();
+      continue;
+    }
     std::optional<Support> to = support_at(in, site.claims, nodes[i], line[i], rope && end, anywhere);
     if (rope && !to && !end) continue;
     if (from && to) {
@@ -224,43 +233,6 @@ std::optional<model::SurroundingBody> wire_bodies(const BodySite& site, const Th
   }
   if (made.faces.empty()) return std::nullopt;
   return made;
-}
-
-void pack_wires(const SurroundingInputs& in, const ClaimFinder& claims, const Thing& thing,
-                const geometry::PlanBox& around, base::Packer& out) {
-  if (thing.hidden || !has_wires(in, thing)) return;
-  const auto nodes = in.extract.nodes_of(in.extract.rings_of(in.extract.features[thing.feature].rings)[0]);
-  const std::vector<std::vector<Point2>> lines = claims.lines_of(thing);
-  if (lines.empty() || lines[0].size() != nodes.size()) return;
-  const std::vector<Point2>& line = lines[0];
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    geometry::PlanBox at;
-    at.include(line[i]);
-    if (!at.near(around, kMostSpan)) continue;
-    for (const Point2 p : neighbours(in, claims, nodes[i])) out << p.x << p.y;
-    const std::optional<std::uint32_t> feature = claims.feature_of_node(nodes[i]);
-    out << feature.has_value();
-    if (feature)
-      for (const model::Tag& tag : in.extract.tags_of(in.extract.features[*feature].tags))
-        out << in.extract.strings.view(tag.key) << in.extract.strings.view(tag.value);
-    // What the foot stands on.
-    const GroundClaims ground = claims.claims_in(at);
-    for (const geometry::AreaClaim& claim : ground.claims)
-      if (geometry::claim_holds(claim, line[i])) {
-        out << ground.labels[claim.label].building << ground.labels[claim.label].offset;
-        break;
-      }
-    // Buildings below the span, wherever they are.
-    if (i == 0 || std::hypot(line[i].x - line[i - 1].x, line[i].y - line[i - 1].y) > kMostSpan) continue;
-    const double length = std::hypot(line[i].x - line[i - 1].x, line[i].y - line[i - 1].y);
-    std::int32_t over = 0;
-    for (double s = 0; s < length; s += kLookStep) {
-      const double t = s / length;
-      over += claims.building_at(
-          {line[i - 1].x + t * (line[i].x - line[i - 1].x), line[i - 1].y + t * (line[i].y - line[i - 1].y)});
-    }
-    out << over;
-  }
 }
 
 }  // namespace blockrand::surroundings

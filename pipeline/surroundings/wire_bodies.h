@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/base/pack.h"
 #include "pipeline/surroundings/body_site.h"
 
 namespace blockrand::surroundings {
@@ -23,9 +22,5 @@ std::optional<double> wire_direction(const SurroundingInputs& in, const ClaimFin
 /// \param anywhere  the ground, wherever a line leads
 std::optional<model::SurroundingBody> wire_bodies(const BodySite& site, const Thing& thing,
                                                   const GroundAtPlace& anywhere);
-
-/// All that wire_bodies reads of the map beyond kSurroundingsReach of a box.
-void pack_wires(const SurroundingInputs& in, const ClaimFinder& claims, const Thing& thing,
-                const geometry::PlanBox& around, base::Packer& out);
 
 }  // namespace blockrand::surroundings

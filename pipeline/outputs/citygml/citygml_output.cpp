@@ -34,8 +34,9 @@ class CityGmlOutput : public OutputOf<bool> {
 
   std::any write_tile(FinishedTile& tile) const override {
     if (tile.has_parts) tile.files.push_back(write(tile.region, tile.name));
-    if (has_surroundings(tile, context_)) tile.files.push_back(write_surroundings(tile));
-    return tile.has_parts;
+    const bool around = has_surroundings(tile, context_);
+    if (around) tile.files.push_back(write_surroundings(tile));
+    return tile.has_parts || around;
   }
   void take(const FinishedTile&, std::any product) override { empty_ = empty_ && !std::any_cast<bool>(product); }
   void finish(const FinishedBuild& build) override {

@@ -44,10 +44,10 @@ class CityJsonOutput : public OutputOf<bool> {
   }
 
   std::any write_tile(FinishedTile& tile) const override {
-    const bool written = sequences_ && tile.has_parts;
-    if (written) tile.files.push_back(write(tile.region, tile.name, newest_edit(tile.shard)));
-    if (sequences_ && has_surroundings(tile, context_)) tile.files.push_back(write_surroundings(tile));
-    return written;
+    const bool houses = sequences_ && tile.has_parts, around = sequences_ && has_surroundings(tile, context_);
+    if (houses) tile.files.push_back(write(tile.region, tile.name, newest_edit(tile.shard)));
+    if (around) tile.files.push_back(write_surroundings(tile));
+    return houses || around;
   }
   void take(const FinishedTile& tile, std::any product) override {
     empty_ = empty_ && !std::any_cast<bool>(product);
