@@ -53,7 +53,19 @@ TileId tile_at(double lon, double lat) {
       footprints::kTileLevel);
 }
 
+bool is_within(const importers::osm::ChangedObject& change, const std::array<double, 4>& window) {
+  return change.box[0] <= window[2] && change.box[2] >= window[0] && change.box[1] <= window[3] &&
+         change.box[3] >= window[1];
+}
+
 }  // namespace
+
+bool any_within(const TileChoice& area, std::span<const importers::osm::ChangedObject> changes) {
+  return std::ranges::any_of(changes, [&](const importers::osm::ChangedObject& change) {
+    if (change.placeless && area.placeless) return true;
+    return !(change.placeless && change.box == std::array<double, 4>{}) && is_within(change, area.window);
+  });
+}
 
 AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
                             std::span<const importers::osm::ChangedObject> changes, const RulesReach& rules,
@@ -66,7 +78,7 @@ AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
     if (change.placeless && area.placeless) return look_into_all("objects without a place");
     if (change.placeless && change.box == std::array<double, 4>{}) continue;
     // Somewhere else: no tile here reaches further than what is read for the area.
-    if (change.box[0] > all[2] || change.box[2] < all[0] || change.box[1] > all[3] || change.box[3] < all[1]) continue;
+    if (!is_within(change, all)) continue;
     const geometry::PlanBox box = projected_box(change.box, projection);
     const double beyond = std::max(change.network ? kNetworkReach : 0, change.kinds != 0 ? rules.metres : 0);
     const bool look_only = change.look_only && !(rules.asks_look && change.kinds != 0);

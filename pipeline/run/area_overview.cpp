@@ -23,6 +23,7 @@
 #include "pipeline/model/issue_codes.h"
 #include "pipeline/outputs/output.h"
 #include "pipeline/outputs/tileset/nested_tileset.h"
+#include "pipeline/run/area_surroundings.h"
 #include "pipeline/run/assets.h"
 #include "pipeline/run/configuration.h"
 #include "pipeline/run/documents.h"
@@ -82,7 +83,7 @@ struct Overview::State {
   std::vector<Entry> entries;
   Json common;  ///< of the first record: what is the same in all
   std::vector<model::ReportRow> elsewhere;
-  Json counts = Json::object(), issues = Json::object(), statistics = Json::object();
+  Json counts = Json::object(), issues = Json::object(), statistics = Json::object(), surroundings = Json::object();
 
   /// By path.
   std::map<std::string, std::string> tilesets() const {
@@ -248,6 +249,7 @@ void Overview::add(const TileId& area, const std::string& folder) {
   add_numbers(s.counts, counts);
   add_numbers(s.issues, record.at("issues"));
   add_numbers(s.statistics, record.at("statistics"));
+  if (record.contains("surroundings")) add_numbers(s.surroundings, record.at("surroundings"));
   if (s.common.is_null()) {
     for (const char* key : {"inputs", "crs", "terrain"})
       if (record.contains(key)) s.common[key] = record.at(key);
@@ -264,6 +266,12 @@ void Overview::add(std::vector<model::ReportRow> rows) {
     count = (count.is_null() ? 0 : count.get<std::int64_t>()) + 1;
   }
   state_->elsewhere = std::move(rows);
+}
+
+void Overview::settle_around(const std::vector<surroundings::SharedOutcome>& shared,
+                             const surroundings::SurroundingCounts& elsewhere) {
+  add_numbers(state_->surroundings, surroundings_json(elsewhere));
+  settle_surroundings(shared, state_->surroundings);
 }
 
 void Overview::settle(std::vector<outputs::PartySide> open) {
@@ -326,6 +334,7 @@ void Overview::write(base::StagedFolder& folder, const std::vector<std::string>&
   j["counts"] = std::move(counts);
   j["issues"] = s.issues;
   j["statistics"] = s.statistics;
+  if (!s.surroundings.empty()) j["surroundings"] = s.surroundings;
   j["areas"] = s.area_list();
   j["files"] = Json::object();
   for (const base::PublishedFile& f : files) {

@@ -11,6 +11,7 @@
 #include "pipeline/outputs/statistics.h"
 #include "pipeline/run/build.h"
 #include "pipeline/run/region_facts.h"
+#include "pipeline/surroundings/account.h"
 
 namespace blockrand::run {
 
@@ -34,6 +35,10 @@ class Overview {
 
   /// \param folder  of the area, whole \throws base::OutputError  its documents cannot be read
   void add(const model::TileId& area, const std::string& folder);
+
+  /// What stands around houses: what areas share, which each counted, and counts of what lies in no area that is built.
+  void settle_around(const std::vector<surroundings::SharedOutcome>& shared,
+                     const surroundings::SurroundingCounts& elsewhere);
 
   /// Rows of what lies in no area that is built.
   void add(std::vector<model::ReportRow> rows);

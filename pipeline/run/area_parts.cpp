@@ -43,9 +43,10 @@ struct SavedParts {
 };
 
 /// \param data  hash of the extract's file: a store knows nodes and members that no kept object tells of
-std::string store_key(const std::string& data) {
+/// \param surroundings  it has what only these are made of
+std::string store_key(const std::string& data, bool surroundings) {
   base::Packer key;
-  key << program_identity() << data;
+  key << program_identity() << data << surroundings;
   return base::sha256_of(key.bytes);
 }
 
@@ -145,6 +146,7 @@ std::set<std::string> AreaParts::kept_work() const {
 void AreaParts::choose() {
   std::set<TileId> tiles;
   for (const auto& [tile, objects] : survey_.objects) tiles.insert(tile);
+  tiles.insert(survey_.only_surroundings.begin(), survey_.only_surroundings.end());
   // What has no place needs one that tells of it.
   if (tiles.empty()) {
     const std::vector<importers::osm::StoredArea> areas = areas_of(*store_, options_.areas);
@@ -180,7 +182,8 @@ std::optional<WorkCache::Found> AreaParts::kept_store() {
   const Json run = json_of(options_.earlier + "/run.json");
   const Json inputs = run.is_object() ? run.value("inputs", Json()) : Json();
   if (!inputs.is_array() || inputs.empty()) return std::nullopt;
-  std::optional<WorkCache::Found> before = cache_->find(kStores, store_key(text_in(inputs.front(), "sha256")));
+  std::optional<WorkCache::Found> before =
+      cache_->find(kStores, store_key(text_in(inputs.front(), "sha256"), options_.surroundings.any()));
   return before && before->places.size() == importers::osm::kStoreFiles.size() ? std::move(before) : std::nullopt;
 }
 
@@ -202,7 +205,8 @@ void AreaParts::keep_store() {
     const std::string path = work_ + "/store/" + name;
     files.push_back({name, fs::file_size(path, error), base::sha256_file(path)});
   }
-  cache_->keep(kStores, store_key(extract_file(options_).sha256), {}, files, work_ + "/store");
+  cache_->keep(kStores, store_key(extract_file(options_).sha256, options_.surroundings.any()), {}, files,
+               work_ + "/store");
 }
 
 /// What differs from the data of the earlier build, and which tiles it concerns.
@@ -241,6 +245,14 @@ void AreaParts::look_at_changes(std::size_t i, std::span<const importers::osm::C
     return;
   }
   part.roomy = true;  // work on most of its tiles is kept
+  if (options_.surroundings.any()) {
+    // Reaches are those of buildings.
+    if (any_within(part.choice, changes))
+      why_whole_[i] = "what stands around the houses is looked into as a whole";
+    else
+      unconcerned_.insert(i), why_whole_[i].clear();
+    return;
+  }
   AreaChanges concerned = concerned_tiles(part.choice, reaches, changes, rules, projection);
   why_whole_[i] = std::move(concerned.why_whole);
   if (concerned.tiles.empty() && why_whole_[i].empty())

@@ -28,6 +28,7 @@ AreaOutcome outcome_of(BuildSummary&& s) {
   outcome.unaccounted = std::move(s.unaccounted);
   outcome.folder = std::move(s.folder);
   outcome.open_walls = std::move(s.open_walls);
+  outcome.shared_surroundings = std::move(s.shared_surroundings);
   return outcome;
 }
 

@@ -23,6 +23,7 @@ struct AreaOutcome {
   std::vector<std::string> unaccounted;
   std::string folder;
   std::vector<outputs::PartySide> open_walls;
+  std::vector<surroundings::SharedOutcome> shared_surroundings;
   bool in_part = false;          ///< only some tiles were looked into
   bool too_small = false;        ///< that was not enough: nothing was built
   std::string why_whole;         ///< why all were

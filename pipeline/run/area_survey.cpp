@@ -19,7 +19,10 @@
 #include "pipeline/georef/crs.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/georef/tiles.h"
+#include "pipeline/run/area_surroundings.h"
+#include "pipeline/run/prepare_extract.h"
 #include "pipeline/run/tile_choice.h"
+#include "pipeline/surroundings/catalogue.h"
 
 namespace blockrand::run {
 namespace {
@@ -34,6 +37,10 @@ struct AreaFacts {
   std::set<std::uint32_t> rule_sets;         ///< that hold for a building
   std::vector<attributes::NamedPlaceQuestion> named_places;
   std::vector<model::ReportRow> rows;  ///< where there are no objects
+  // As well there, where surroundings are asked for:
+  std::vector<model::TileId> tiles;  ///< into which some come
+  surroundings::SurroundingCounts surroundings{};
+  std::vector<surroundings::SharedOutcome> shared;
 };
 
 class Surveyor {
@@ -51,6 +58,11 @@ class Surveyor {
       for (const districts::Preset& p : rules_.book.presets) names.presets.push_back(p.name);
       overrides_ = attributes::read_overrides(options.overrides, defaults_, names);
       key << base::sha256_file(options.overrides);
+    }
+    if (options.surroundings.any()) {
+      const std::string path = options.configs + "/surroundings.toml";
+      catalogue_.emplace(path);
+      key << surroundings::show_surroundings(options.surroundings) << catalogue_->sha256();
     }
     shared_ = std::move(key.bytes);
   }
@@ -71,6 +83,7 @@ class Surveyor {
     const georef::GeoBox box = georef::bounds(tile);
     importers::osm::ReadOptions read;
     read.bbox = {box.west, box.south, box.east, box.north};
+    if (catalogue_) read.surroundings = read.touching = true;
     model::Extract extract = store_.read(read, placeless);
     AreaFacts facts;
     std::set<std::uint32_t> matched;
@@ -99,6 +112,7 @@ class Surveyor {
       facts.rows = std::move(extract.report.rows);
       forget_others(
           extract, area, [](const model::MappedBuilding&) { return false; }, facts.rows);
+      if (catalogue_) look_around(extract, tile, placeless, facts);
     }
     // Which areas are large enough does not depend on the projection: any that fits will do.
     const georef::LonLat middle = box.centre();
@@ -125,8 +139,19 @@ class Surveyor {
     return facts;
   }
 
+  void look_around(const model::Extract& extract, const model::TileId& tile, bool placeless, AreaFacts& facts) const {
+    for (const model::TileId& t :
+         tiles_with_surroundings(extract, tiles_in(georef::bounds(tile), footprints::kTileLevel)))
+      if (georef::contains(tile, t)) facts.tiles.push_back(t);
+    surroundings::SurroundingAccount account;
+    account.take_elsewhere(extract, *catalogue_, options_.surroundings, begins_in(extract, tile, placeless));
+    facts.surroundings = account.counts();
+    facts.shared = shared_outcomes(account, extract, tile);
+  }
+
   const importers::osm::ExtractStore& store_;
   const BuildOptions& options_;
+  std::optional<surroundings::Catalogue> catalogue_;  ///< where surroundings are asked for
   attributes::Defaults defaults_;
   attributes::ReadRuleSets rules_;
   attributes::Overrides overrides_;
@@ -174,6 +199,8 @@ RegionSurvey survey_region(const importers::osm::ExtractStore& store, const Buil
   std::map<std::uint32_t, std::string> why;
   std::vector<attributes::NamedPlaceQuestion> named_places;
   std::map<std::tuple<std::string, std::string, model::OsmId>, attributes::PinnedArea> pins;
+  // Of areas without buildings, until it is known where there are some.
+  std::map<model::TileId, AreaFacts> empty;
   const std::vector<importers::osm::StoredArea> areas = areas_of(store, options.areas);
   for (const importers::osm::StoredArea& area : areas) {
     AreaFacts facts = surveyor.look(area, &area == areas.data() && store.has_placeless(), memo);
@@ -189,6 +216,11 @@ RegionSurvey survey_region(const importers::osm::ExtractStore& store, const Buil
       for (std::size_t i = 0; i < named_places.size(); ++i)
         named_places[i].found = named_places[i].found || facts.named_places[i].found;
     for (attributes::PinnedArea& pin : facts.pins) pins.try_emplace({pin.question, pin.value, pin.id}, std::move(pin));
+    if (facts.objects == 0 && options.surroundings.any()) {
+      AreaFacts& kept = empty[area.tile];
+      kept.tiles = std::move(facts.tiles), kept.surroundings = facts.surroundings,
+      kept.shared = std::move(facts.shared);
+    }
   }
   survey.unanswered = attributes::unanswered(named_places, rule_sets);
   for (auto& [what, pin] : pins) survey.facts.areas.push_back(std::move(pin));
@@ -201,6 +233,17 @@ RegionSurvey survey_region(const importers::osm::ExtractStore& store, const Buil
   const std::optional<footprints::Area> area = footprints::area_of(centres);
   survey.has_outlines = area.has_value();
   if (area) survey.facts.box = area->box, survey.facts.centre = area->centre;
+  const TileRange region = tiles_in(survey.facts.box, footprints::kTileLevel);
+  for (auto& [tile, facts] : empty) {
+    if (area && std::ranges::any_of(facts.tiles, [&](const model::TileId& t) { return region.holds(t); })) {
+      survey.only_surroundings.insert(tile);
+      continue;
+    }
+    for (std::size_t k = 0; k < survey.surroundings.size(); ++k)
+      for (std::size_t s = 0; s < survey.surroundings[k].size(); ++s)
+        survey.surroundings[k][s] += facts.surroundings[k][s];
+    survey.shared_surroundings.insert(survey.shared_surroundings.end(), facts.shared.begin(), facts.shared.end());
+  }
   survey.facts.crs =
       options.crs.empty() || !area ? georef::choose_crs(survey.facts.centre.lon, survey.facts.centre.lat) : options.crs;
   const georef::Crs crs = georef::open_crs(survey.facts.crs, survey.facts.box);

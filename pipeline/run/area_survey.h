@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "pipeline/base/progress.h"
 #include "pipeline/run/options.h"
 #include "pipeline/run/region_facts.h"
+#include "pipeline/surroundings/account.h"
 
 namespace blockrand::run {
 
@@ -21,6 +23,10 @@ struct RegionSurvey {
   std::vector<std::string> unmatched;              ///< orders of the overrides that match nothing in any area
   std::vector<model::ReportRow> rows;              ///< of what lies in areas without buildings, which are not built
   std::vector<std::string> unanswered;             ///< DistrictAssigner::unanswered of all areas together
+  std::set<model::TileId> only_surroundings;       ///< areas without buildings that have tiles among those with some
+  /// What lies in areas that are not built, of the surroundings of houses.
+  surroundings::SurroundingCounts surroundings{};
+  std::vector<surroundings::SharedOutcome> shared_surroundings;  ///< of it, what areas may tell of as well
 };
 
 /// Bytes stored of what is read for an area: of more it is cut in four, so that its memory stays within a bound. In a city of

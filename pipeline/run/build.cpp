@@ -32,6 +32,7 @@
 #include "pipeline/outputs/output.h"
 #include "pipeline/outputs/statistics.h"
 #include "pipeline/run/account.h"
+#include "pipeline/run/area_surroundings.h"
 #include "pipeline/run/area_tiles.h"
 #include "pipeline/run/before_tiles.h"
 #include "pipeline/run/build_areas.h"
@@ -249,6 +250,16 @@ void warn_of_terrain(const BuildInputs& inputs, base::Progress& progress) {
         "{}: pixel {},{} holds {:g} m, which is no height on Earth: such pixels count as missing. Declare them with "
         "gdal_edit.py -a_nodata VALUE",
         inputs.terrain->describe().path, pixel->column, pixel->row, pixel->metres));
+}
+
+/// What no tile told of. A tile that is built alone tells of what is in it, and no more.
+void account_of_surroundings(const BuildOptions& options, const Extract& extract, const std::optional<TileChoice>& tile,
+                             const surroundings::Catalogue& catalogue, BuildRecord& record) {
+  if (tile && !record.area) return;
+  std::function<bool(const model::Feature&)> wanted = [](const model::Feature&) { return true; };
+  if (record.area) wanted = begins_in(extract, *record.area, tile->placeless);
+  record.surroundings.take_elsewhere(extract, catalogue, options.surroundings, wanted);
+  if (record.area) record.summary.shared_surroundings = shared_outcomes(record.surroundings, extract, *record.area);
 }
 
 void finish_outputs(const OpenOutputs& open, const Region& whole, const Account& account, BuildRecord& record,
@@ -529,7 +540,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   base::ordered_parallel(todo.size(), workers, in_flight, work, consume, load);
   sums.settle(record);
   warn_of_terrain(inputs, progress);
-  if (finder && !tile) record.surroundings_elsewhere = record.surroundings.elsewhere(finder->claims(), extract);
+  if (finder) account_of_surroundings(options, extract, tile, *inputs.surroundings, record);
   account.close(area ? std::nullopt : tile, shards, looked_into, summary);
   if (!options.measure) refuse_shrunk(options, summary, place.earlier);
 
@@ -572,10 +583,9 @@ BuildSummary build_area(const BuildOptions& options, const AreaPart& part, base:
   return build_all_or_part(options, &part, progress);
 }
 
-BuildSummary build(const BuildOptions& options, base::Progress& progress) {
-  if (options.surroundings.any() && (options.areas > 0 || !options.area.empty()))
-    throw base::UsageError(
-        "--surroundings are made in a build of the whole, not yet in areas: leave out --areas and --area");
+BuildSummary build(const BuildOptions& asked, base::Progress& progress) {
+  BuildOptions options = asked;
+  options.surroundings = asked.surroundings.settled(asked.lod);
   if (options.areas > 0) return build_in_areas(options, progress);
   if (options.memory_limit > 0 && options.settings.empty())  // a region's settings hold for builds of both kinds
     throw base::UsageError("--memory-limit says how many areas are built at a time: it needs --areas");

@@ -12,6 +12,7 @@
 #include "pipeline/outputs/object_counts.h"
 #include "pipeline/outputs/statistics.h"
 #include "pipeline/run/options.h"
+#include "pipeline/surroundings/shared_outcome.h"
 
 namespace blockrand::run {
 
@@ -33,7 +34,8 @@ struct BuildSummary : outputs::ObjectCounts {
   std::set<std::string> areas_in_part;      ///< those of which only some tiles were looked into
   std::set<std::string> kept_work_of_areas;  ///< as kept_work, each behind the area that used it: "11/1093/805 tiles/…"
   std::vector<outputs::PartySide> open_walls;  ///< of an area: party walls whose other side is not in it
-  std::set<std::string> kept_work;             ///< what the run used or left in the cache (WorkCache::used)
+  std::vector<surroundings::SharedOutcome> shared_surroundings;  ///< of an area: what others may tell of as well
+  std::set<std::string> kept_work;  ///< what the run used or left in the cache (WorkCache::used)
   std::map<std::string, std::string, std::less<>> figures;  ///< of single files, in words, by path
   bool below_quality = false;                               ///< a building is simpler than asked, or has no solid
   std::uint64_t images_misfit = 0;                          ///< aerial images that do not fit the map

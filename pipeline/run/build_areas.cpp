@@ -21,6 +21,7 @@
 #include "pipeline/run/area_overview.h"
 #include "pipeline/run/area_parts.h"
 #include "pipeline/run/area_runner.h"
+#include "pipeline/run/area_surroundings.h"
 #include "pipeline/run/before_tiles.h"
 #include "pipeline/run/build_inputs.h"
 #include "pipeline/run/divide_extract.h"
@@ -99,6 +100,11 @@ class AreaBuild {
 
   /// The same area of the earlier build, where nothing that changed concerns it.
   bool take_over(AreaParts& parts, std::size_t i) {
+    const Json run = parts.earlier_run(i);
+    std::vector<surroundings::SharedOutcome> shared;
+    if (options_.surroundings.any() &&
+        !(run.is_object() && read_shared(run.value("shared_surroundings", Json()), shared)))
+      return false;
     const std::optional<std::vector<std::string>> paths = parts.earlier_files(i);
     if (!paths) return false;
     const std::string from = parts.earlier_place(i);
@@ -108,7 +114,6 @@ class AreaBuild {
         file.path = area_path(parts.id(i)) + "/" + path;
         folder_.link(file, from + "/" + path);
       }
-    const Json run = parts.earlier_run(i);
     const auto count = [&](const char* key) {
       const Json tiles = run.value("tiles", Json::object());
       return tiles.contains(key) && tiles[key].is_number_unsigned() ? tiles[key].get<std::uint64_t>() : 0;
@@ -121,6 +126,7 @@ class AreaBuild {
             side[2].is_number() && side[3].is_number())
           open_walls_.push_back(
               {side[0].get<std::uint64_t>(), side[1].get<double>(), side[2].get<double>(), side[3].get<double>()});
+    shared_surroundings_.insert(shared_surroundings_.end(), shared.begin(), shared.end());
     summary_.areas_taken_over.insert(text_of(parts.id(i)));
     ++kept_;
     return true;
@@ -168,6 +174,9 @@ class AreaBuild {
     for (const outputs::PartySide& side : outcome.open_walls)
       run["open_walls"].push_back({side.wall, side.length, side.base, side.top});
     open_walls_.insert(open_walls_.end(), outcome.open_walls.begin(), outcome.open_walls.end());
+    if (options_.surroundings.any()) run["shared_surroundings"] = shared_json(outcome.shared_surroundings);
+    shared_surroundings_.insert(shared_surroundings_.end(), outcome.shared_surroundings.begin(),
+                                outcome.shared_surroundings.end());
     folder_.write(area_path(parts.id(i)) + "/run.json.new", run.dump(1) + "\n");
     std::error_code error;
     fs::rename(place + "/run.json.new", place + "/run.json", error);
@@ -188,6 +197,10 @@ class AreaBuild {
     for (std::size_t i = 0; i < parts.size(); ++i) overview.add(parts.id(i), place_of(parts.id(i)));
     overview.add(parts.survey().rows);
     overview.settle(std::move(open_walls_));
+    const RegionSurvey& survey = parts.survey();
+    shared_surroundings_.insert(shared_surroundings_.end(), survey.shared_surroundings.begin(),
+                                survey.shared_surroundings.end());
+    if (options_.surroundings.any()) overview.settle_around(shared_surroundings_, survey.surroundings);
     overview.sum_up(summary_);
     refuse_shrunk(options_, summary_, earlier_);
     overview.write(folder_, parts.survey().unmatched, summary_);
@@ -256,7 +269,8 @@ class AreaBuild {
   std::size_t at_once_ = 1, kept_ = 0;
   int jobs_ = 1;
   std::uint64_t own_peak_ = 0;
-  std::vector<outputs::PartySide> open_walls_;  ///< of all areas
+  std::vector<outputs::PartySide> open_walls_;                    ///< of all areas
+  std::vector<surroundings::SharedOutcome> shared_surroundings_;  ///< as well
   BuildSummary summary_;
 };
 

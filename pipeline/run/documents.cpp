@@ -5,6 +5,7 @@
 
 #include "pipeline/base/version.h"
 #include "pipeline/outputs/output.h"
+#include "pipeline/run/area_surroundings.h"
 #include "pipeline/run/configuration.h"
 #include "pipeline/run/tile_choice.h"
 
@@ -76,20 +77,6 @@ Json counts_json(const BuildRecord& r) {
   if (!r.area)  // what is missing has no place
     counts["missing_nodes"] = r.counts.missing_nodes, counts["missing_ways"] = r.counts.missing_ways;
   return counts;
-}
-
-/// By kind: how many are in each state; those of no tile are `elsewhere`.
-Json surroundings_json(const BuildRecord& r) {
-  Json out = Json::object();
-  const surroundings::SurroundingCounts counts = r.surroundings.counts();
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    Json of_kind = Json::object();
-    for (std::size_t s = 0; s < counts[k].size(); ++s)
-      if (counts[k][s] > 0) of_kind[std::string(model::kSurroundingStateNames[s])] = counts[k][s];
-    if (r.surroundings_elsewhere[k] > 0) of_kind["elsewhere"] = r.surroundings_elsewhere[k];
-    if (!of_kind.empty()) out[std::string(surroundings::kSurroundingKindNames[k])] = std::move(of_kind);
-  }
-  return out;
 }
 
 Json statistics_json(const outputs::Statistics& t) {
@@ -219,7 +206,7 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
   j["issues"] = Json::object();
   for (const auto& [code, count] : r.summary.issues) j["issues"][code] = count;
   j["statistics"] = statistics_json(r.statistics);
-  if (!r.surroundings.empty()) j["surroundings"] = surroundings_json(r);
+  if (!r.surroundings.empty()) j["surroundings"] = surroundings_json(r.surroundings.counts());
   j["files"] = Json::object();
   for (const base::PublishedFile& f : r.files) j["files"][f.path] = {{"bytes", f.bytes}, {"sha256", f.sha256}};
   return j.dump(1) + "\n";

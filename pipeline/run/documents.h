@@ -51,8 +51,6 @@ struct BuildRecord {
   BuildSummary summary;
   outputs::Statistics statistics;
   surroundings::SurroundingAccount surroundings;
-  /// Things around houses that lie in no tile with buildings, by kind. Of a build of the whole.
-  std::array<std::uint64_t, surroundings::kSurroundingKindCount> surroundings_elsewhere{};
   model::ExtractCounts counts;
   std::vector<base::PublishedFile> files;  ///< in path order
 };

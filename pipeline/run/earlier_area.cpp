@@ -16,6 +16,13 @@ using Json = nlohmann::ordered_json;
 void pack_facts(base::Packer& key, const TileChoice& area, const georef::Projection& projection) {
   const RegionFacts& facts = area.facts;
   key << facts.crs << facts.box << facts.centre << area.placeless;
+  // Which of its tiles lie among the buildings of the whole.
+  const int steps = area.tile_level - area.id.level;
+  const auto last = [&](std::uint32_t n) { return ((n + 1) << steps) - 1; };
+  const std::optional<TileRange> here = common(area.region, {{area.tile_level, area.id.x << steps, area.id.y << steps},
+                                                             {area.tile_level, last(area.id.x), last(area.id.y)}});
+  key << here.has_value();
+  if (here) key << here->low << here->high;
   const auto& [west, south, east, north] = area.window;
   const auto unit = [](double degrees) { return static_cast<std::int32_t>(std::lround(degrees * 1e7)); };
   double low_x = 1e300, low_y = 1e300, high_x = -1e300, high_y = -1e300;

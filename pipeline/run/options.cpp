@@ -198,15 +198,15 @@ base::OptionTable<B> place_and_ground() {
           {.name = "surroundings",
            .key = "surroundings",
            .argument = "LAYERS",
-           .help = "what stands and lies around the houses: on, off, or some of ground, bodies, objects with commas "
-                   "between them (docs/surroundings.md)",
-           .choices = {"on", "off", "ground", "bodies", "objects"},
+           .help = "what stands and lies around the houses: on, off, some of ground, bodies, objects with commas "
+                   "between them, or auto: on at LoD3, off below (docs/surroundings.md)",
+           .choices = {"auto", "on", "off", "ground", "bodies", "objects"},
            .record = OptionRecord::yes},
           [](B& b, const std::string& text) { b.surroundings = surroundings::parse_surroundings(text); },
           [](const B& b) { return surroundings::show_surroundings(b.surroundings); },
           [](const B& b) {
-            return b.surroundings.any() ? std::optional(RecordValue(surroundings::show_surroundings(b.surroundings)))
-                                        : std::nullopt;
+            const surroundings::SurroundingOptions layers = b.surroundings.settled(b.lod);
+            return layers.any() ? std::optional(RecordValue(surroundings::show_surroundings(layers))) : std::nullopt;
           }),
       number({.name = "ground-height",
               .key = "ground_height",

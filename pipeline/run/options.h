@@ -57,7 +57,7 @@ struct BuildOptions {
   outputs::OutputOptions outputs;
   repair::RepairOptions repair;
   attributes::GenerateOptions generate;
-  surroundings::SurroundingOptions surroundings;
+  surroundings::SurroundingOptions surroundings = surroundings::usual_surroundings();
 };
 
 /// How users set them: the main section, and those of the stages whose options a build holds.

@@ -39,46 +39,54 @@ void check_scale(const georef::Projection& projection, const georef::Crs& crs, g
 
 /// Tiles without buildings between those that have some, as far as something is mapped in them: the surroundings need no house.
 /// \param asked  the one tile that is built, which is there in any case
-void add_empty_tiles(const model::Extract& extract, const std::optional<TileChoice>& asked,
+void add_empty_tiles(const LocatedExtract& located, const std::optional<TileChoice>& asked,
                      std::vector<footprints::Shard>& shards) {
   std::set<model::TileId> known;
   for (const footprints::Shard& shard : shards) known.insert(shard.tile);
   const auto add = [&](const model::TileId& tile) {
     if (known.insert(tile).second) shards.push_back({tile, {}});
   };
-  if (asked) {
-    if (!asked->is_area()) add(asked->id);
-  } else if (!shards.empty()) {
-    const int level = shards.front().tile.level;
-    model::TileId low = shards.front().tile, high = low;
-    for (const footprints::Shard& shard : shards) {
-      low.x = std::min(low.x, shard.tile.x), low.y = std::min(low.y, shard.tile.y);
-      high.x = std::max(high.x, shard.tile.x), high.y = std::max(high.y, shard.tile.y);
-    }
-    using enum model::FeatureKind;
-    for (const model::Feature& feature : extract.features) {
-      if (!feature.is(street) && !feature.is(land_use) && !feature.is(water) && !feature.is(railway) &&
-          !feature.is(tree) && !feature.is(barrier) && !feature.is(surrounding))
-        continue;
-      for (const model::MappedRing& ring : extract.rings_of(feature.rings)) {
-        // All tiles that the box of a segment meets.
-        std::optional<model::TileId> before;
-        for (const model::Location at : extract.vertices_of(ring)) {
-          const model::TileId tile = georef::tile_of(at, level), from = before.value_or(tile);
-          for (std::uint32_t y = std::max(std::min(from.y, tile.y), low.y);
-               y <= std::min(std::max(from.y, tile.y), high.y); ++y)
-            for (std::uint32_t x = std::max(std::min(from.x, tile.x), low.x);
-                 x <= std::min(std::max(from.x, tile.x), high.x); ++x)
-              add({level, x, y});
-          before = tile;
-        }
-      }
-    }
+  if (asked && !asked->is_area()) {
+    add(asked->id);
+  } else if (asked) {
+    const auto bounds = tiles_in(georef::bounds(asked->id), asked->tile_level);
+    if (const std::optional<TileRange> range = common(asked->region, bounds))
+      for (const model::TileId& tile : tiles_with_surroundings(located.extract, *range))
+        if (georef::contains(asked->id, tile)) add(tile);
+  } else if (located.area) {
+    for (const model::TileId& tile :
+         tiles_with_surroundings(located.extract, tiles_in(located.facts.box, footprints::kTileLevel)))
+      add(tile);
   }
   std::ranges::sort(shards, {}, &footprints::Shard::tile);
 }
 
 }  // namespace
+
+std::set<model::TileId> tiles_with_surroundings(const model::Extract& extract, const TileRange& range) {
+  std::set<model::TileId> out;
+  const int level = range.low.level;
+  using enum model::FeatureKind;
+  for (const model::Feature& feature : extract.features) {
+    if (!feature.is(street) && !feature.is(land_use) && !feature.is(water) && !feature.is(railway) &&
+        !feature.is(tree) && !feature.is(barrier) && !feature.is(surrounding))
+      continue;
+    for (const model::MappedRing& ring : extract.rings_of(feature.rings)) {
+      // All tiles that the box of a segment meets.
+      std::optional<model::TileId> before;
+      for (const model::Location at : extract.vertices_of(ring)) {
+        const model::TileId tile = georef::tile_of(at, level), from = before.value_or(tile);
+        const auto [low_x, high_x] = std::minmax(from.x, tile.x);
+        const auto [low_y, high_y] = std::minmax(from.y, tile.y);
+        if (const auto both = common(range, {{level, low_x, low_y}, {level, high_x, high_y}}))
+          for (std::uint32_t y = both->low.y; y <= both->high.y; ++y)
+            for (std::uint32_t x = both->low.x; x <= both->high.x; ++x) out.insert({level, x, y});
+        before = tile;
+      }
+    }
+  }
+  return out;
+}
 
 LocatedExtract locate_extract(const BuildOptions& options, const std::optional<TileChoice>& tile,
                               base::Progress& progress, const importers::osm::ExtractStore* store) {
@@ -105,7 +113,8 @@ LocatedExtract locate_extract(const BuildOptions& options, const std::optional<T
 
   progress.begin("locate");
   const std::optional<footprints::Area> area = footprints::area_of(extract);
-  if (!area)
+  // An area of a region may have no building, but streets.
+  if (!area && !(store && options.surroundings.any()))
     progress.warn(fmt::format("{}: no building with an outline{}; the outputs are valid but empty", told_input(options),
                               options.bbox || tile ? " in the given place" : ""));
   RegionFacts facts;
@@ -138,7 +147,7 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
   model::Report report;
   std::vector<footprints::Shard> shards =
       footprints::make_shards(extract, report, tile ? tile->tile_level : footprints::kTileLevel);
-  if (options.surroundings.any()) add_empty_tiles(extract, tile, shards);
+  if (options.surroundings.any()) add_empty_tiles(located, tile, shards);
   repair::KeptNodes kept(extract);
   footprints::RepairedExtract repaired =
       footprints::repair_extract(extract, shards, located.projection, kept, options.repair, workers, progress, memo);

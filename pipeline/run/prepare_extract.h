@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -45,6 +46,9 @@ struct LocatedExtract {
 /// \param store  where an area is read from; null: from the input
 LocatedExtract locate_extract(const BuildOptions& options, const std::optional<TileChoice>& tile,
                               base::Progress& progress, const importers::osm::ExtractStore* store = nullptr);
+
+/// Tiles of a range into which something comes that surroundings of houses are made of.
+std::set<model::TileId> tiles_with_surroundings(const model::Extract& extract, const TileRange& range);
 
 /// What the stages before the tiles found. Keeps no reference to the extract but in `kept`.
 struct PreparedExtract {

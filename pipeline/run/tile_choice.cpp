@@ -63,11 +63,33 @@ std::string text_of(const model::TileId& tile) {
   return std::to_string(tile.level) + "/" + std::to_string(tile.x) + "/" + std::to_string(tile.y);
 }
 
+TileRange tiles_in(const georef::GeoBox& box, int level) {
+  const auto tile_at = [&](double lon, double lat) {
+    constexpr double kUnits = 1e7;
+    return georef::tile_of({static_cast<std::int32_t>(std::lround(std::clamp(lon, -180.0, 180.0) * kUnits)),
+                            static_cast<std::int32_t>(std::lround(std::clamp(lat, -90.0, 90.0) * kUnits))},
+                           level);
+  };
+  TileRange range{tile_at(box.west, box.south), tile_at(box.east, box.north)};
+  // Across 180 degrees: what lies between them is everything.
+  if (box.east > 180 || box.west < -180) range.low.x = 0, range.high.x = (std::uint32_t{2} << level) - 1;
+  return range;
+}
+
+std::optional<TileRange> common(const TileRange& a, const TileRange& b) {
+  TileRange out = a;
+  out.low.x = std::max(a.low.x, b.low.x), out.low.y = std::max(a.low.y, b.low.y);
+  out.high.x = std::min(a.high.x, b.high.x), out.high.y = std::min(a.high.y, b.high.y);
+  if (out.low.x > out.high.x || out.low.y > out.high.y) return std::nullopt;
+  return out;
+}
+
 TileChoice choose_area(const model::TileId& area, RegionFacts facts) {
   TileChoice choice;
   choice.id = area;
   choice.tile_level = footprints::kTileLevel;
   choice.facts = std::move(facts);
+  choice.region = tiles_in(choice.facts.box, choice.tile_level);
   // Every area is the same whatever stands at the other end of the region. The box chooses among PROJ's operations.
   georef::GeoBox& box = choice.facts.box;
   constexpr double kSteps = 10;  // of a degree

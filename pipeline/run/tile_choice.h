@@ -24,6 +24,18 @@ namespace blockrand::run {
 /// are known to be longer when the data goes on; and a kilometre for what chains of these and large buildings add.
 inline constexpr double kHalo = 3000;
 
+/// Tiles of one level between two of them, which count as well.
+struct TileRange {
+  model::TileId low, high;
+  bool holds(const model::TileId& tile) const {
+    return tile.x >= low.x && tile.x <= high.x && tile.y >= low.y && tile.y <= high.y;
+  }
+};
+/// Those that a box in degrees meets.
+TileRange tiles_in(const georef::GeoBox& box, int level);
+/// Both; empty where they have none in common.
+std::optional<TileRange> common(const TileRange& a, const TileRange& b);
+
 /// A tile that is built alone, or an area of many tiles.
 struct TileChoice {
   model::TileId id;
@@ -35,10 +47,11 @@ struct TileChoice {
   std::optional<outputs::ReadImagery> imagery;  ///< what the build of the whole saw in its images
   std::array<double, 4> window{};  ///< west, south, east, north in degrees: the tile and its halo, all that is read
   std::vector<std::array<double, 4>> parts;  ///< with `only`: of the window what is read; empty: all
+  TileRange region;                          ///< of an area: tiles among the buildings of the whole
   std::set<model::TileId> other_network;     ///< of `only`: those near which streets or the like changed
 };
 
-/// The area's window. \param facts  of the whole
+/// The area, its window and its place in the region. \param facts  of the whole
 TileChoice choose_area(const model::TileId& area, RegionFacts facts);
 
 /// "11/1093/805"
