@@ -39,6 +39,8 @@ std::string_view name(Commands command) {
       return "cache";
     case kPublish:
       return "publish";
+    case kSchedule:
+      return "schedule";
   }
   return "";
 }

@@ -36,10 +36,12 @@ enum Commands : unsigned {
   kRegion = 1024,
   kCache = 2048,
   kView = 4096,
-  kPublish = 8192
+  kPublish = 8192,
+  kSchedule = 16384
 };
-inline constexpr Commands kAllCommands[] = {kBuild,  kInfo,   kExplain,  kValidate, kCompare, kDistricts, kGrammar,
-                                            kUpdate, kStatus, kRollback, kRegion,   kCache,   kView,      kPublish};
+inline constexpr Commands kAllCommands[] = {kBuild,     kInfo,    kExplain, kValidate, kCompare,
+                                            kDistricts, kGrammar, kUpdate,  kStatus,   kRollback,
+                                            kRegion,    kCache,   kView,    kPublish,  kSchedule};
 std::string_view name(Commands command);  ///< "build"
 
 /// Where an option stands in help and reference. One with keys is a table of the config file, too, and all but the main

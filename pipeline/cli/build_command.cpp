@@ -16,6 +16,8 @@
 #include "pipeline/cli/spooled_input.h"
 #include "pipeline/run/build.h"
 #include "pipeline/run/plan_build.h"
+#include "pipeline/run/region_folder.h"
+#include "pipeline/run/region_metrics.h"
 #include "pipeline/settings/command_line.h"
 
 namespace blockrand::cli {
@@ -25,6 +27,7 @@ namespace {
 int build(const settings::Settings& s, base::Progress& progress) {
   const run::BuildSummary summary = run::build(s.build, progress);
   progress.end();
+  if (!s.metrics.empty()) run::write_whole(s.metrics, run::build_metrics(summary.folder, run::name_of(s.build)));
   if (s.log_format == base::LogFormat::json)
     std::fputs(build_report_json(s.build, summary).c_str(), stdout);
   else if (!s.quiet)

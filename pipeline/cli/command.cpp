@@ -12,6 +12,7 @@
 #include "pipeline/cli/info_command.h"
 #include "pipeline/cli/publish_command.h"
 #include "pipeline/cli/region_commands.h"
+#include "pipeline/cli/schedule_command.h"
 #include "pipeline/cli/validate_command.h"
 #include "pipeline/cli/view_command.h"
 
@@ -19,11 +20,12 @@ namespace blockrand::cli {
 
 const std::vector<Command>& commands() {
   static const std::vector<Command> all = {
-      {build_text(), run_build},       {view_text(), run_view},           {update_text(), run_update},
-      {status_text(), run_status},     {rollback_text(), run_rollback},   {region_text(), run_region},
-      {publish_text(), run_publish},   {cache_text(), run_cache},         {explain_text(), run_explain},
-      {compare_text(), run_compare},   {districts_text(), run_districts}, {grammar_text(), run_grammar},
-      {validate_text(), run_validate}, {info_text(), run_info},           {help_text(), run_help},
+      {build_text(), run_build},     {view_text(), run_view},         {update_text(), run_update},
+      {status_text(), run_status},   {rollback_text(), run_rollback}, {region_text(), run_region},
+      {publish_text(), run_publish}, {schedule_text(), run_schedule}, {cache_text(), run_cache},
+      {explain_text(), run_explain}, {compare_text(), run_compare},   {districts_text(), run_districts},
+      {grammar_text(), run_grammar}, {validate_text(), run_validate}, {info_text(), run_info},
+      {help_text(), run_help},
   };
   return all;
 }

@@ -22,6 +22,7 @@
 #include "pipeline/outward/postgis.h"
 #include "pipeline/outward/publish.h"
 #include "pipeline/run/region_folder.h"
+#include "pipeline/run/region_hook.h"
 #include "pipeline/run/update_region.h"
 #include "pipeline/settings/command_line.h"
 #include "pipeline/settings/config_file.h"
@@ -130,6 +131,8 @@ std::string update_report(const run::UpdateOptions& options, const run::UpdateSu
       out += "  " + options.folder + "/current        what is published\n";
       out += fmt::format("  {}/log/{}.changes.html   what differs, and why\n", options.folder,
                          run::RegionFolder::digits(s.number));
+      out += fmt::format("  {}/log/{}.report.txt     where the time went, what came out simpler\n", options.folder,
+                         run::RegionFolder::digits(s.number));
       break;
     case run::UpdateState::refused:
       out += fmt::format("build {} is not published{}\n", s.number,
@@ -184,6 +187,7 @@ settings::CommandText update_text() {
       .exit_codes = {{"0", "all well"},
                      {"1", "wrong usage"},
                      {"2", "unreadable or invalid input"},
+                     {"3", "all well, but the published data are older than max_age_hours"},
                      {"4", "output could not be written or internal error"},
                      {"5", "built, but refused by a gate of the region"},
                      {"6", "built and published here, but not where [publish] sends it: to do"},
@@ -251,10 +255,12 @@ int ended(const run::UpdateOptions& options, const run::UpdateSummary& summary, 
     std::fputs(update_json(summary).c_str(), stdout);
   else if (!s.quiet || summary.state == run::UpdateState::refused)
     std::fputs(update_report(options, summary).c_str(), stdout);
+  if (!summary.too_old.empty()) progress.warn(summary.too_old);
   if (summary.state == run::UpdateState::refused) return kRefused;
   if (summary.state == run::UpdateState::planned || summary.state == run::UpdateState::shared) return kSuccess;
   std::fflush(stdout);
-  return publish_after_update(s, progress) ? kSuccess : kNotOutward;
+  if (!publish_after_update(s, progress)) return kNotOutward;
+  return summary.too_old.empty() ? kSuccess : kTooOld;
 }
 
 /// \param line  of `update`, or of `region repair` with its extract
@@ -271,9 +277,28 @@ int update(settings::CommandLine& line, std::string sha256) {
 
 }  // namespace
 
+/// A region.toml that cannot be read is a night that failed as well: what the command line says of it is all that is known.
+settings::CommandLine line_or_notice(settings::Commands command, const std::vector<std::string>& arguments,
+                                     std::string& sha256) {
+  try {
+    return region_line(command, arguments, sha256);
+  } catch (const std::exception& error) {
+    settings::CommandLine line;
+    try {
+      line = settings::read_command_line(command, arguments);
+    } catch (const std::exception&) {  // told below, as the first one
+    }
+    base::Progress progress(base::ProgressStyle::none, line.settings.log_format);
+    if (!line.help && !line.settings.dry_run)
+      run::call_hook("notify command", line.settings.region_options.notify, line.settings.region,
+                     {"failed", 0, run::one_line(error.what())}, progress);
+    throw;
+  }
+}
+
 int run_update(const std::vector<std::string>& arguments) {
   std::string sha256;
-  settings::CommandLine line = region_line(settings::kUpdate, arguments, sha256);
+  settings::CommandLine line = line_or_notice(settings::kUpdate, arguments, sha256);
   if (line.help) {
     std::fputs(settings::command_help(update_text()).c_str(), stdout);
     return kSuccess;
@@ -380,7 +405,7 @@ void refuse_unread(const settings::Settings& s) {
 
 int run_region(const std::vector<std::string>& arguments) {
   std::string sha256;
-  settings::CommandLine line = region_line(settings::kRegion, arguments, sha256);
+  settings::CommandLine line = line_or_notice(settings::kRegion, arguments, sha256);
   if (line.help) {
     std::fputs(settings::command_help(region_text()).c_str(), stdout);
     return kSuccess;
@@ -412,9 +437,37 @@ settings::CommandText status_text() {
               "Tells the published build of a region, how old its data are, which builds are kept, how the "
               "last run ended, and which change files wait. Nothing is changed.",
           .options = settings::kStatus,
-          .examples = {{"blockrand status leipzig", ""}, {"blockrand status leipzig --json | jq .data_time", ""}},
-          .exit_codes = {{"0", "all well"}, {"1", "wrong usage"}, {"2", "unreadable or invalid input"}}};
+          .examples = {{"blockrand status leipzig", ""},
+                       {"blockrand status leipzig --max-age 30", "one more line and exit code 3 where they are older"},
+                       {"blockrand status leipzig --json | jq .data_time", ""}},
+          .exit_codes = {{"0", "all well"},
+                         {"1", "wrong usage"},
+                         {"2", "unreadable or invalid input"},
+                         {"3", "the published data are older than --max-age"}}};
 }
+
+namespace {
+
+/// "run 3, failed, 2026-11-26T03:00:00Z, 5.8 s: why"
+std::string last_run_words(const std::string& line) {
+  const auto j = nlohmann::ordered_json::parse(line, nullptr, false);
+  if (!j.is_object()) return line;
+  const auto text = [&](const char* key) {
+    return j.contains(key) && j[key].is_string() ? j[key].get<std::string>() : std::string();
+  };
+  std::string out = fmt::format("run {}, {}, {}", j.value("run", 0), text("state"), text("ended"));
+  if (j.contains("seconds") && j["seconds"].is_number()) out += ", " + seconds_text(j["seconds"].get<double>());
+  if (!text("error").empty()) out += ": " + run::one_line(text("error"));
+  if (j.contains("refused_by") && j["refused_by"].is_array()) {
+    std::string keys;
+    for (const auto& key : j["refused_by"])
+      if (key.is_string()) keys += (keys.empty() ? "" : ", ") + key.get<std::string>();
+    out += ": refused by " + keys;
+  }
+  return out;
+}
+
+}  // namespace
 
 int run_status(const std::vector<std::string>& arguments) {
   std::string sha256;
@@ -441,8 +494,9 @@ int run_status(const std::vector<std::string>& arguments) {
                             : nlohmann::ordered_json();
     j["outward_to_do"] = outward::outward_to_do(s.region, status.current);
     j["waiting"] = status.waiting, j["waiting_problem"] = status.waiting_problem;
+    j["too_old"] = status.too_old;
     std::fputs((j.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n").c_str(), stdout);
-    return kSuccess;
+    return status.too_old.empty() ? kSuccess : kTooOld;
   }
   std::string out;
   if (!status.current) {
@@ -460,13 +514,14 @@ int run_status(const std::vector<std::string>& arguments) {
     out += fmt::format("run {} is under way in {} shards: {} of {} areas are done\n", status.plan->number,
                        status.plan->shards, status.plan->done, status.plan->areas);
   for (const std::string& line : outward::outward_to_do(s.region, status.current)) out += line + "\n";
-  if (!status.last_run.empty()) out += "last run: " + status.last_run + "\n";
+  if (!status.last_run.empty()) out += "last run: " + last_run_words(status.last_run) + "\n";
   if (!status.waiting_problem.empty())
     out += "the next run will fail: " + status.waiting_problem + "\n";
   else if (!s.region_options.replication.empty())
     out += fmt::format("change files that wait: {}\n", status.waiting.size());
+  if (!status.too_old.empty()) out += "too old: " + status.too_old + "\n";
   std::fputs(out.c_str(), stdout);
-  return kSuccess;
+  return status.too_old.empty() ? kSuccess : kTooOld;
 }
 
 settings::CommandText rollback_text() {

@@ -29,6 +29,7 @@ AreaOutcome outcome_of(BuildSummary&& s) {
   outcome.folder = std::move(s.folder);
   outcome.open_walls = std::move(s.open_walls);
   outcome.shared_surroundings = std::move(s.shared_surroundings);
+  outcome.slowest_tiles = std::move(s.slowest_tiles);
   return outcome;
 }
 

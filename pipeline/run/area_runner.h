@@ -24,6 +24,7 @@ struct AreaOutcome {
   std::string folder;
   std::vector<outputs::PartySide> open_walls;
   std::vector<surroundings::SharedOutcome> shared_surroundings;
+  std::vector<TileTime> slowest_tiles;
   bool in_part = false;          ///< only some tiles were looked into
   bool too_small = false;        ///< that was not enough: nothing was built
   std::string why_whole;         ///< why all were

@@ -527,6 +527,9 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
     TileResult result = std::move(slots[i % in_flight]);
     ++(result.kept ? summary.tiles_kept : summary.tiles_built);
     for (const std::string_view why : result.why) ++summary.tiles_built_for[std::string(why)];
+    if (!result.kept)
+      note_slow_tile(summary.slowest_tiles,
+                     {outputs::tile_name(todo[i].tile), result.microseconds, told_shards[todo[i].place].seeds.size()});
     if (area && todo[i].shard) keys_here[todo[i].tile] = result.key;
     sums.take(std::move(result), todo[i].place, options, open, account, record);
     done += told_shards[todo[i].place].seeds.size();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <set>
 #include <string>
 #include <vector>
@@ -15,6 +16,18 @@
 #include "pipeline/surroundings/shared_outcome.h"
 
 namespace blockrand::run {
+
+/// How long work on a tile took.
+struct TileTime {
+  std::string tile;                ///< "15_35207_25947"
+  std::uint64_t microseconds = 0;  ///< of one thread
+  std::uint64_t buildings = 0;
+};
+/// So many are told (own choice): enough to see what they have in common, few enough for names of metrics.
+inline constexpr std::size_t kSlowestTiles = 10;
+/// Adds a tile where it is among the slowest; of equal ones the first by name.
+void note_slow_tile(std::vector<TileTime>& slowest, TileTime tile);
+nlohmann::ordered_json slowest_tiles_json(const std::vector<TileTime>& slowest);
 
 /// What a build ended with.
 struct BuildSummary : outputs::ObjectCounts {
@@ -29,6 +42,7 @@ struct BuildSummary : outputs::ObjectCounts {
   double planned_tile_seconds = 0;  ///< BuildOptions::plan: how long the tiles should take; 0: nobody knows
   /// Why tiles were worked on, counted by what differs from the run before: names of TilePart, "new", "not kept".
   std::map<std::string, std::uint64_t> tiles_built_for;
+  std::vector<TileTime> slowest_tiles;      ///< of those worked on, at most kSlowestTiles; the slowest first
   std::uint64_t areas = 0, areas_kept = 0;  ///< of a build in areas: all, and those of the earlier build
   std::set<std::string> areas_taken_over;   ///< the latter by name
   std::set<std::string> areas_in_part;      ///< those of which only some tiles were looked into

@@ -153,6 +153,7 @@ class AreaBuild {
     for (const std::string& entry : outcome.kept_work) summary_.kept_work_of_areas.insert(area + " " + entry);
     summary_.below_quality = summary_.below_quality || outcome.below_quality;
     if (outcome.in_part) summary_.areas_in_part.insert(area);
+    for (TileTime& tile : outcome.slowest_tiles) note_slow_tile(summary_.slowest_tiles, std::move(tile));
     summary_.unaccounted.insert(summary_.unaccounted.end(), outcome.unaccounted.begin(), outcome.unaccounted.end());
     if (options_.plan) return;
     const std::string place = place_of(parts.id(i));
@@ -243,6 +244,7 @@ class AreaBuild {
     j["areas"] = {{"all", parts.size()}, {"taken_over", kept_}, {"at_once", at_once_}};
     j["tiles"] = {
         {"built", summary_.tiles_built}, {"kept", summary_.tiles_kept}, {"built_for", summary_.tiles_built_for}};
+    j["slowest_tiles"] = slowest_tiles_json(summary_.slowest_tiles);
     j["jobs"] = base::worker_count(options_.jobs);
     j["host"] = base::host_name();
     const InputFile file = extract_file(options_);

@@ -1,5 +1,6 @@
 #include "pipeline/run/documents.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -212,6 +213,23 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
   return j.dump(1) + "\n";
 }
 
+void note_slow_tile(std::vector<TileTime>& slowest, TileTime tile) {
+  const auto slower = [](const TileTime& a, const TileTime& b) {
+    return a.microseconds != b.microseconds ? a.microseconds > b.microseconds : a.tile < b.tile;
+  };
+  slowest.insert(std::ranges::upper_bound(slowest, tile, slower), std::move(tile));
+  if (slowest.size() > kSlowestTiles) slowest.pop_back();
+}
+
+Json slowest_tiles_json(const std::vector<TileTime>& slowest) {
+  Json j = Json::array();
+  for (const TileTime& t : slowest)
+    j.push_back({{"tile", t.tile},
+                 {"thread_seconds", rounded(1e-6 * static_cast<double>(t.microseconds), 1000)},
+                 {"buildings", t.buildings}});
+  return j;
+}
+
 std::string run_json(const RunRecord& run, const BuildSummary& summary) {
   Json j;
   j["timings"] = Json::object();
@@ -226,6 +244,7 @@ std::string run_json(const RunRecord& run, const BuildSummary& summary) {
   j["tiles"] = {{"built", summary.tiles_built},
                 {"kept", summary.tiles_kept},
                 {"built_for", summary.tiles_built_for}};  // the latter from an earlier run
+  j["slowest_tiles"] = slowest_tiles_json(summary.slowest_tiles);
   j["jobs"] = run.jobs;
   j["host"] = run.host;
   j["inputs"] = inputs_json(run.inputs);

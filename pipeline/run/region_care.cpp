@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 
@@ -9,6 +10,7 @@
 #include "pipeline/base/sha256.h"
 #include "pipeline/base/text.h"
 #include "pipeline/run/region_folder.h"
+#include "pipeline/run/region_metrics.h"
 #include "pipeline/run/region_plan.h"
 #include "pipeline/run/region_state.h"
 #include "pipeline/run/replication.h"
@@ -56,13 +58,14 @@ RegionStatus region_status(const std::string& folder, const RegionOptions& optio
   if (status.current) {
     const Json record = read_json(region.build(*status.current) + "/build.json"),
                run = read_json(region.build(*status.current) + "/run.json");
-    status.data_time = text_in(record, "data_time");
+    status.data_time = data_time_of(region);
     if (record.contains("counts")) status.models = record["counts"].value("models", std::uint64_t{0});
     if (run.contains("seconds") && run["seconds"].is_number()) status.seconds = run["seconds"].get<double>();
     state = DataState::read(region.state(*status.current));
     status.sequence = state.sequence;
   }
   status.plan = plan_status(region);
+  status.too_old = too_old(region, options, static_cast<double>(std::time(nullptr)));
   std::ifstream runs(folder + "/log/runs.jsonl", std::ios::binary);
   for (std::string line; std::getline(runs, line);)
     if (!line.empty()) status.last_run = line;

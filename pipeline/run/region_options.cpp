@@ -63,7 +63,28 @@ base::OptionTable<R> of_region() {
              .help = "run by /bin/sh when a run has ended, with BLOCKRAND_STATE (published, unchanged, refused, "
                      "failed), BLOCKRAND_REGION, BLOCKRAND_BUILD and BLOCKRAND_CHANGES in its environment",
              .record = OptionRecord::none},
-            &R::hook)});
+            &R::hook),
+       text({.name = "notify",
+             .key = "notify",
+             .argument = "COMMAND",
+             .commands = kUpdate | kSchedule,
+             .help = "run by /bin/sh when a run failed, was refused, or left data older than max_age_hours, with "
+                     "BLOCKRAND_REASON (one line), BLOCKRAND_STATE (failed, refused, stale) and what the hook gets",
+             .help_of = {{kSchedule,
+                          "run by /bin/sh when a night failed, was refused, or left data older than --max-age, with "
+                          "BLOCKRAND_REASON (one line), BLOCKRAND_STATE and BLOCKRAND_REGION in its environment"}},
+             .record = OptionRecord::none},
+            &R::notify),
+       number({.name = "max-age",
+               .key = "max_age_hours",
+               .argument = "HOURS",
+               .commands = kUpdate | kStatus | kSchedule,
+               .minimum = 0,
+               .maximum = 1e6,
+               .help = "data of the published build that are older are told, and are exit code 3; 0: they may have any "
+                       "age",
+               .record = OptionRecord::none},
+              &R::max_age_hours)});
 }
 
 base::OptionTable<R> of_gates() {

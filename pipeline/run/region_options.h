@@ -24,6 +24,8 @@ struct RegionOptions {
   double max_worse = 5;          ///< by how much a measure of that comparison may be worse; percent
   std::string polygon;           ///< file with the area that data are cut to, or empty
   std::string hook;              ///< command that is run when a run has ended, or empty
+  std::string notify;        ///< command that is run when a run failed or was refused, or data are too old; or empty
+  double max_age_hours = 0;  ///< data of the published build that are older are too old; 0: they never are
 };
 
 /// Sections [region] and [gates].

@@ -97,6 +97,7 @@ Plan plan_of(const UpdateOptions& options, const RegionFolder& region, std::opti
     throw base::UsageError(region.path() + " has no data yet. Begin with an extract: blockrand update " +
                            region.path() + " EXTRACT.osm.pbf");
   plan.sequence = state.sequence;
+  if (plan.extract.empty()) plan.time = state.time;
   if (!plan.extract.empty()) {
     // One that does not say where it ends is newer than what is there, or applying again does no harm.
     if (const auto own = importers::osm::replication_sequence(plan.extract)) plan.sequence = own;
@@ -107,6 +108,7 @@ Plan plan_of(const UpdateOptions& options, const RegionFolder& region, std::opti
          replication_files(options.region.replication, next_sequence(options.region, plan.sequence, region))) {
       plan.changes.push_back(file.path);
       plan.sequence = file.sequence;
+      plan.time = file.time;
     }
   if (!plan.changes.empty())
     plan.why.push_back(plan.changes.size() == 1

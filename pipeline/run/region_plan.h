@@ -24,6 +24,7 @@ struct Plan {
   std::string extract;                    ///< a full one; empty: the data in the store
   std::vector<std::string> changes;       ///< change files, in their order
   std::optional<std::uint64_t> sequence;  ///< after them
+  std::string time;                       ///< of the newest change file in them, ISO 8601, or empty
   std::vector<std::string> why;
 };
 

@@ -30,7 +30,7 @@ std::string dumped(const Json& j, int indent) {
 DataState DataState::of(const Json& j) {
   DataState state;
   state.sha256 = text_in(j, "data_sha256"), state.settings = text_in(j, "settings_sha256");
-  state.input = text_in(j, "input");
+  state.input = text_in(j, "input"), state.time = text_in(j, "data_time");
   if (j.contains("sequence") && j["sequence"].is_number_unsigned()) state.sequence = j["sequence"].get<std::uint64_t>();
   if (j.contains("areas") && j["areas"].is_number_unsigned()) state.areas = std::min(j["areas"].get<int>(), 14);
   state.crs_chosen = j.contains("crs_chosen") && j["crs_chosen"] == true;
@@ -42,6 +42,7 @@ Json DataState::json() const {
   return {{"data_sha256", sha256},
           {"settings_sha256", settings},
           {"sequence", sequence ? Json(*sequence) : Json()},
+          {"data_time", time},
           {"input", input},
           {"areas", static_cast<unsigned>(areas)},
           {"crs_chosen", crs_chosen},

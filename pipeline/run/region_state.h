@@ -22,6 +22,7 @@ std::string dumped(const nlohmann::ordered_json& j, int indent = -1);
 struct DataState {
   std::string sha256, settings;           ///< of the data's file; of what is built from it (settings_sha256())
   std::optional<std::uint64_t> sequence;  ///< of the newest change file in it
+  std::string time;                       ///< ISO 8601, of that change file, where its state file says it; or empty
   std::string input;                      ///< the input of region.toml when it was last taken: path, size, time
   int areas = 0;                ///< level of the areas that it is built in (BuildOptions::areas); 0: all at once
   bool crs_chosen = false;      ///< by the program, not by region.toml

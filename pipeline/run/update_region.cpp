@@ -24,8 +24,10 @@
 #include "pipeline/run/build_inputs.h"
 #include "pipeline/run/changes_map.h"
 #include "pipeline/run/link_unchanged.h"
+#include "pipeline/run/region_end.h"
 #include "pipeline/run/region_folder.h"
 #include "pipeline/run/region_hook.h"
+#include "pipeline/run/region_metrics.h"
 #include "pipeline/run/region_plan.h"
 #include "pipeline/run/region_shards.h"
 #include "pipeline/run/region_state.h"
@@ -65,24 +67,6 @@ std::string_view word(UpdateState state) {
       return "shared";
   }
   return "";
-}
-
-Json run_line(const UpdateSummary& s) {
-  Json j = {
-      {"run", s.number}, {"ended", now_utc()}, {"state", word(s.state)}, {"seconds", std::round(s.seconds * 10) / 10}};
-  j["why"] = s.why;
-  if (s.sequence) j["sequence"] = *s.sequence;
-  if (s.tiles_built + s.tiles_kept > 0)
-    j["tiles"] = {{"built", s.tiles_built}, {"kept", s.tiles_kept}, {"built_for", s.tiles_built_for}};
-  if (s.areas > 0) j["areas"] = {{"all", s.areas}, {"taken_over", s.areas_kept}};
-  j["osm_objects"] = {{"created", s.created}, {"modified", s.modified}, {"deleted", s.deleted}, {"outside", s.outside}};
-  j["buildings"] = {{"before", s.changes.before},
-                    {"after", s.changes.after},
-                    {"added", s.changes.added.size()},
-                    {"removed", s.changes.removed.size()}};
-  for (const Gate& g : s.gates)
-    if (g.exceeded()) j["refused_by"].push_back(g.key);
-  return j;
 }
 
 void write_changes(const RegionFolder& region, int number, const UpdateSummary& summary) {
@@ -160,6 +144,7 @@ class Updater {
     summary_.sequence = plan.sequence;
     DataState fresh = before_;
     fresh.settings = settings_sha256(options_), fresh.sequence = plan.sequence, fresh.replaced = current;
+    fresh.time = plan.time;
     fresh.crs_chosen = options_.build.crs.empty();
     if (!plan.extract.empty() && plan.extract == options_.build.input) fresh.input = stamp_of(plan.extract);
     const bool new_settings = current && fresh.settings != before_.settings;
@@ -215,12 +200,22 @@ class Updater {
 
   /// What is known of a run that throws.
   const UpdateSummary& so_far() const { return summary_; }
+  /// What it wrote to log/runs.jsonl.
+  const Json& line() const { return line_; }
 
  private:
   UpdateSummary ended(UpdateState state) {
     summary_.state = state;
     summary_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    if (!options_.dry_run) append_run(region_, run_line(summary_), progress_);
+    if (options_.dry_run) return summary_;
+    line_ = run_line(summary_, progress_);
+    append_run(region_, line_, progress_);
+    if (state != UpdateState::unchanged) try {
+        write_whole(region_.log(summary_.number).substr(0, region_.log(summary_.number).rfind('.')) + ".report.txt",
+                    run_report(region_, summary_.folder, line_));
+      } catch (const base::OutputError& error) {
+        progress_.warn(fmt::format("the report of the run is not written: {}", error.what()));
+      }
     return summary_;
   }
 
@@ -311,8 +306,9 @@ class Updater {
   UpdateSummary stay(int current, const DataState& fresh) {
     summary_.number = current;
     summary_.folder = region_.build(current);
-    if (!options_.dry_run && (fresh.sequence != before_.sequence || fresh.input != before_.input)) {
-      before_.sequence = fresh.sequence, before_.input = fresh.input;
+    if (!options_.dry_run &&
+        (fresh.sequence != before_.sequence || fresh.input != before_.input || fresh.time != before_.time)) {
+      before_.sequence = fresh.sequence, before_.input = fresh.input, before_.time = fresh.time;
       before_.write(region_.state(current));
     }
     return ended(UpdateState::unchanged);
@@ -442,6 +438,7 @@ class Updater {
     summary_.tiles_built = built.tiles_built, summary_.tiles_kept = built.tiles_kept;
     summary_.tiles_built_for = built.tiles_built_for;
     summary_.areas = built.areas, summary_.areas_kept = built.areas_kept;
+    summary_.slowest_tiles = built.slowest_tiles, summary_.peak_rss_bytes = built.peak_rss_bytes;
     std::set<std::string> kept_work = built.kept_work;
     kept_work.insert(built.kept_work_of_areas.begin(), built.kept_work_of_areas.end());
     if (current)  // what areas used that were taken over stays of use, and of those in part what comes before their tiles
@@ -483,7 +480,7 @@ class Updater {
     // It is published: what fails now is told, and no more.
     UpdateSummary done = ended(UpdateState::published);
     try {
-      write_whole(region_.log(number), dumped(run_line(done), 1));
+      write_whole(region_.log(number), dumped(line_, 1));
       std::vector<int> also;
       if (current) also.push_back(*current);
       if (options_.region.baseline >= 0) also.push_back(options_.region.baseline);
@@ -515,11 +512,8 @@ class Updater {
   UpdateSummary summary_;
   DataState before_;
   std::string comparison_;  ///< compare.json of the new build
+  Json line_;
 };
-
-}  // namespace
-
-namespace {
 
 void check_explained(const UpdateOptions& options) {
   if (!options.build.outputs.explain)
@@ -528,31 +522,30 @@ void check_explained(const UpdateOptions& options) {
         "region.toml.");
 }
 
-/// A run that changes the region: what was left by others is removed first, and its end written down.
-UpdateSummary run_alone(const UpdateOptions& options, const RegionFolder& region, base::Progress& progress,
-                        const std::function<UpdateSummary(Updater&)>& work) {
+using RunWork = std::function<UpdateSummary(Updater&)>;
+
+/// A run of a region that is locked, however it ends. The hook and all that is told of it come last.
+UpdateSummary run_to_its_end(const UpdateOptions& options, const RegionFolder& region, base::Progress& progress,
+                             const RunWork& work) {
   Updater updater(options, region, progress);
   try {
-    const UpdateSummary summary = work(updater);
-    if (summary.state != UpdateState::shared)
-      call_hook(options.region.hook, options.dry_run, region, word(summary.state), summary.number, progress);
+    begin_run(region);
+    UpdateSummary summary = work(updater);
+    if (summary.state == UpdateState::shared) return summary;  // its end is to come
+    summary.too_old = end_run(options, region, {word(summary.state), summary.number, refusal(summary.gates)},
+                              updater.line(), progress);
     return summary;
   } catch (const std::exception& error) {
-    Json line = run_line(updater.so_far());
+    Json line = run_line(updater.so_far(), progress);
     line["state"] = "failed", line["error"] = error.what();
     append_run(region, line, progress);
-    call_hook(options.region.hook, options.dry_run, region, "failed", updater.so_far().number, progress);
+    end_run(options, region, {"failed", updater.so_far().number, one_line(error.what())}, line, progress);
     throw;
   }
 }
 
-UpdateSummary begin_run(const UpdateOptions& options, base::Progress& progress,
-                        const std::function<UpdateSummary(Updater&)>& work) {
-  check_explained(options);
-  const RegionFolder region(options.folder);
-  region.make();
-  const RegionLock lock(region, options.break_lock, progress);
-  refuse_while_planned(region);
+/// What a run that was broken off left is removed.
+void tidy(const RegionFolder& region, base::Progress& progress) {
   for (const std::string& path : region.remove_unfinished())
     progress.warn("removed " + path + ": left by a run that was broken off");
   // A run that died between its gates and the switch left the region's first build without a pointer.
@@ -563,7 +556,32 @@ UpdateSummary begin_run(const UpdateOptions& options, base::Progress& progress,
     region.publish(builds.front());
     progress.warn(fmt::format("{} was missing; it leads to the only build now, {}", pointer, builds.front()));
   }
-  return run_alone(options, region, progress, work);
+}
+
+/// The region's lock, and what `check` throws, or a word to the operator.
+template <class Check>
+void lock_or_notice(const UpdateOptions& options, const RegionFolder& region, std::optional<RegionLock>& lock,
+                    base::Progress& progress, Check&& check) {
+  try {
+    region.make();
+    lock.emplace(region, options.break_lock, progress);
+    check();
+  } catch (const std::exception& error) {
+    // Another run may be at work: what it writes is its own.
+    call_hook("notify command", options.region.notify, region.path(), {"failed", 0, one_line(error.what())}, progress);
+    throw;
+  }
+}
+
+UpdateSummary run_from_its_begin(const UpdateOptions& options, base::Progress& progress, const RunWork& work) {
+  check_explained(options);
+  const RegionFolder region(options.folder);
+  std::optional<RegionLock> lock;
+  lock_or_notice(options, region, lock, progress, [&] { refuse_while_planned(region); });
+  return run_to_its_end(options, region, progress, [&](Updater& updater) {
+    tidy(region, progress);
+    return work(updater);
+  });
 }
 
 }  // namespace
@@ -574,23 +592,26 @@ UpdateSummary update_region(const UpdateOptions& options, base::Progress& progre
     const RegionFolder region(options.folder);
     return Updater(options, region, progress).run();
   }
-  return begin_run(options, progress, [](Updater& updater) { return updater.run(); });
+  return run_from_its_begin(options, progress, [](Updater& updater) { return updater.run(); });
 }
 
 UpdateSummary plan_region(const UpdateOptions& options, int shards, base::Progress& progress) {
-  return begin_run(options, progress, [&](Updater& updater) { return updater.plan(shards); });
+  return run_from_its_begin(options, progress, [&](Updater& updater) { return updater.plan(shards); });
 }
 
 UpdateSummary finish_region(const UpdateOptions& options, base::Progress& progress) {
   check_explained(options);
   const RegionFolder region(options.folder);
-  const RegionLock lock(region, options.break_lock, progress);
-  const RegionShards plan = RegionShards::read(region);
-  plan.check_same(region, settings_sha256(options));
-  plan.check_done(region);
+  std::optional<RegionLock> lock;
+  RegionShards plan;
+  lock_or_notice(options, region, lock, progress, [&] {
+    plan = RegionShards::read(region);
+    plan.check_same(region, settings_sha256(options));
+    plan.check_done(region);
+  });
   if (plan.tell_unended(region, progress)) WorkCache::mark_open(region.cache());
   const UpdateSummary summary =
-      run_alone(options, region, progress, [&](Updater& updater) { return updater.finish(plan); });
+      run_to_its_end(options, region, progress, [&](Updater& updater) { return updater.finish(plan); });
   remove_plan(region);
   return summary;
 }

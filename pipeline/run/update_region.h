@@ -58,7 +58,10 @@ struct UpdateSummary {
   std::uint64_t areas = 0, areas_kept = 0;               ///< of a region in areas: all, and those that stay as they are
   std::uint64_t linked = 0, linked_bytes = 0;            ///< files that are those of the build before
   std::uint64_t planned_areas = 0;                       ///< that shards are to build
-  double expected_seconds = 0;                           ///< that the run should take: of a dry run; 0: unknown
+  std::vector<TileTime> slowest_tiles;                   ///< BuildSummary::slowest_tiles
+  std::uint64_t peak_rss_bytes = 0;                      ///< of the build and its processes; 0: nothing was built
+  std::string too_old;          ///< why the published data are (max_age_hours); empty: they are not
+  double expected_seconds = 0;  ///< that the run should take: of a dry run; 0: unknown
   double seconds = 0;
 };
 
@@ -95,6 +98,7 @@ struct RegionStatus {
   std::optional<int> current;
   std::vector<int> published;
   std::string data_time;
+  std::string too_old;  ///< why these data are too old (RegionOptions::max_age_hours); empty: they are not
   std::optional<std::uint64_t> sequence;
   std::uint64_t models = 0;
   double seconds = 0;                ///< that the build took

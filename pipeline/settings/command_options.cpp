@@ -30,65 +30,72 @@ Table of_finished_builds() {
 }
 
 Table of_regions() {
-  constexpr unsigned regions = kUpdate | kStatus | kRollback | kRegion;
-  return {word({.name = "STEP",
-                .argument = "STEP",
-                .commands = kRegion,
-                .help = "repair, plan, work, finish or drop",
-                .if_missing = "nothing to do is given: repair, plan, work, finish or drop.",
-                .choices = {"repair", "plan", "work", "finish", "drop"},
-                .after = "FOLDER"},
-               &S::region_work),
-          text({.name = "REGION",
-                .argument = "REGION",
-                .type = OptionType::folder,
-                .commands = regions,
-                .help = "folder of a region that is rebuilt again and again",
-                .if_missing = "no REGION is given: name the folder of a region.",
-                .after = "STEP"},
-               &S::region),
-          texts({.name = "DATA",
-                 .argument = "DATA",
-                 .type = OptionType::path,
-                 .commands = kUpdate | kRegion,
-                 .help = "an extract, change files (.osc, .osc.gz, .osc.bz2), or an extract and then change files; "
-                         "without any, what region.toml names; region repair: an extract",
-                 .help_of = {{kRegion, "repair: an extract. plan: as update takes them"}}},
-                &S::data),
-          flag({.name = "dry-run",
-                .commands = kUpdate | kBuild | kPublish,
-                .help = "tell what would be done and how long that may take; nothing is built; build: check all that "
-                        "can be checked before, and write nothing; publish: which files would be sent",
-                .help_of = {{kUpdate, "tell what would be done and how long that may take; nothing is built"},
-                            {kBuild,
-                             "check options, inputs and place, tell what would be built and what that would "
-                             "take; nothing is written"},
-                            {kPublish, "tell which files would be sent and removed; nothing is"}},
-                .after = "force"},
-               &S::dry_run),
-          flag({.name = "break-lock",
-                .commands = kUpdate | kRollback | kRegion,
-                .help = "go on although a run on another host seems to hold the region; only if it is gone for sure"},
-               &S::break_lock),
-          integer({.name = "shards",
-                   .argument = "N",
-                   .commands = kRegion,
-                   .minimum = 1,
-                   .maximum = 10000,
-                   .help = "plan: by so many processes the areas are to be built; each gets about the same work"},
-                  &S::shards),
-          text({.name = "shard",
-                .argument = "I/N",
-                .commands = kRegion,
-                .help = "work: the shard to work on, from 1/N to N/N; it may be run again, and builds what is missing"},
-               &S::shard),
-          integer({.name = "to",
-                   .argument = "N",
-                   .commands = kRollback,
-                   .minimum = -1,
-                   .maximum = 999999,
-                   .help = "number of the build to go back to; -1: the one before the current one"},
-                  &S::to)};
+  constexpr unsigned regions = kUpdate | kStatus | kRollback | kRegion | kSchedule;
+  return {
+      word({.name = "STEP",
+            .argument = "STEP",
+            .commands = kRegion,
+            .help = "repair, plan, work, finish or drop",
+            .if_missing = "nothing to do is given: repair, plan, work, finish or drop.",
+            .choices = {"repair", "plan", "work", "finish", "drop"},
+            .after = "FOLDER"},
+           &S::region_work),
+      text({.name = "REGION",
+            .argument = "REGION",
+            .type = OptionType::folder,
+            .commands = regions,
+            .help = "folder of a region that is rebuilt again and again",
+            .if_missing = "no REGION is given: name the folder of a region.",
+            .after = "STEP"},
+           &S::region),
+      texts({.name = "DATA",
+             .argument = "DATA",
+             .type = OptionType::path,
+             .commands = kUpdate | kRegion,
+             .help = "an extract, change files (.osc, .osc.gz, .osc.bz2), or an extract and then change files; "
+                     "without any, what region.toml names; region repair: an extract",
+             .help_of = {{kRegion, "repair: an extract. plan: as update takes them"}}},
+            &S::data),
+      flag({.name = "dry-run",
+            .commands = kUpdate | kBuild | kPublish,
+            .help = "tell what would be done and how long that may take; nothing is built; build: check all that "
+                    "can be checked before, and write nothing; publish: which files would be sent",
+            .help_of = {{kUpdate, "tell what would be done and how long that may take; nothing is built"},
+                        {kBuild,
+                         "check options, inputs and place, tell what would be built and what that would "
+                         "take; nothing is written"},
+                        {kPublish, "tell which files would be sent and removed; nothing is"}},
+            .after = "force"},
+           &S::dry_run),
+      flag({.name = "break-lock",
+            .commands = kUpdate | kRollback | kRegion,
+            .help = "go on although a run on another host seems to hold the region; only if it is gone for sure"},
+           &S::break_lock),
+      integer(
+          {.name = "shards",
+           .argument = "N",
+           .commands = kRegion | kSchedule,
+           .minimum = 1,
+           .maximum = 10000,
+           .help = "region plan: by so many processes the areas are to be built; each gets about the same work; "
+                   "schedule: slurm, kubernetes: pieces that are worked on at the same time",
+           .help_of = {{kRegion, "plan: by so many processes the areas are to be built; each gets about the same work"},
+                       {kSchedule,
+                        "slurm, kubernetes: pieces that are worked on at the same time; kubernetes: 1: one pod "
+                        "runs blockrand update"}}},
+          &S::shards),
+      text({.name = "shard",
+            .argument = "I/N",
+            .commands = kRegion,
+            .help = "work: the shard to work on, from 1/N to N/N; it may be run again, and builds what is missing"},
+           &S::shard),
+      integer({.name = "to",
+               .argument = "N",
+               .commands = kRollback,
+               .minimum = -1,
+               .maximum = 999999,
+               .help = "number of the build to go back to; -1: the one before the current one"},
+              &S::to)};
 }
 
 Table of_publishing() {
@@ -100,6 +107,38 @@ Table of_publishing() {
                 .if_missing = "no SOURCE is given: name a region, or the output folder of a build.",
                 .after = "REGION"},
                &S::source)};
+}
+
+Table of_schedules() {
+  return {
+      word({.name = "print",
+            .argument = "KIND",
+            .commands = kSchedule,
+            .help = "for whom: systemd (a service and a timer), cron, slurm (a script that submits jobs), kubernetes "
+                    "(YAML)",
+            .if_missing = "no --print is given: systemd, cron, slurm or kubernetes.",
+            .choices = {"systemd", "cron", "slurm", "kubernetes"},
+            .after = "to"},
+           &S::schedule),
+      text(
+          {.name = "at", .argument = "HH:MM", .commands = kSchedule, .help = "time of day, of the machine's own clock"},
+          &S::schedule_at),
+      text({.name = "user",
+            .argument = "NAME",
+            .commands = kSchedule,
+            .help = "systemd: under whom it runs; without, the owner of the region's folder"},
+           &S::schedule_user),
+      text({.name = "image",
+            .argument = "IMAGE",
+            .commands = kSchedule,
+            .help = "kubernetes: container image with the program; without, blockrand: and the program's version"},
+           &S::schedule_image),
+      text({.name = "into",
+            .argument = "FOLDER",
+            .type = OptionType::folder,
+            .commands = kSchedule,
+            .help = "write each file there, by its name; without, all go to standard output"},
+           &S::schedule_into)};
 }
 
 Table of_caches() {
@@ -241,7 +280,12 @@ Table of_build() {
                 .type = OptionType::path,
                 .help = "read options from this file; the command line is stronger",
                 .after = "force"},
-               &S::config)};
+               &S::config),
+          text({.name = "metrics",
+                .argument = "FILE",
+                .type = OptionType::path,
+                .help = "write figures of the build to this file as well, for Prometheus (docs/operations.md)"},
+               &S::metrics)};
 }
 
 Table of_explain() {
@@ -361,8 +405,9 @@ Table of_messages() {
 }  // namespace
 
 std::vector<base::OptionTable<Settings>> command_options() {
-  return {of_finished_builds(), of_regions(), of_publishing(), of_caches(),  of_districts(), of_grammar(),
-          of_build(),           of_explain(), of_view(),       of_several(), of_compare(),   of_messages()};
+  return {of_finished_builds(), of_regions(), of_publishing(), of_schedules(), of_caches(),
+          of_districts(),       of_grammar(), of_build(),      of_explain(),   of_view(),
+          of_several(),         of_compare(), of_messages()};
 }
 
 }  // namespace blockrand::settings

@@ -30,7 +30,7 @@ struct Settings {
   bool break_lock = false;                          ///< the lock of another host is taken over
   std::int64_t to = -1;                             ///< build that `rollback` goes to; -1: the one before
   std::string region_work;                          ///< of `region`: repair, plan, work, finish or drop
-  int shards = 1;                                   ///< of `region plan`
+  int shards = 1;                                   ///< of `region plan` and `schedule`
   std::string shard;                                ///< of `region work`: "2/8"
   std::string cache_work, cache;                    ///< of `cache`: stat, verify or prune, and the folder
   std::int64_t keep_bytes = -1;                     ///< of `cache prune`; -1: not said
@@ -64,8 +64,14 @@ struct Settings {
   std::string site;               ///< folder that `view` writes; empty: it serves
   base::ProgressStyle progress = base::ProgressStyle::automatic;
   base::LogFormat log_format = base::LogFormat::text;
-  bool verbose = false;  ///< `build` ends with figures for developers, too
-  bool quiet = false;    ///< warnings and errors only
+  std::string schedule;               ///< of `schedule`: systemd, slurm, kubernetes, cron
+  std::string schedule_at = "02:30";  ///< local time of day
+  std::string schedule_user;          ///< under whom; empty: the region's owner
+  std::string schedule_image;         ///< container with the program
+  std::string schedule_into;          ///< folder that the files are written to; empty: standard output
+  std::string metrics;                ///< Prometheus text file that `build` writes; empty: none
+  bool verbose = false;               ///< `build` ends with figures for developers, too
+  bool quiet = false;                 ///< warnings and errors only
 };
 
 using Option = base::Option<Settings>;
