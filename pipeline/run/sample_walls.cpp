@@ -34,6 +34,7 @@ BuildOptions of_tile(const model::TileId& tile, const BuildOptions& options) {
   one.areas = 0, one.memory_limit = 0;
   one.ground_height = 0;
   one.imagery.images.clear();
+  one.surroundings = {};  // their bytes are those of other things than walls
   one.outputs.imagery = one.outputs.report = one.outputs.explain = false;
   std::erase(one.outputs.formats, "gpkg");
   return one;

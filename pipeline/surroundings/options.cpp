@@ -10,7 +10,7 @@ SurroundingOptions SurroundingOptions::settled(int lod) const {
   return lod >= 3 ? SurroundingOptions{true, true, true} : SurroundingOptions{};
 }
 
-SurroundingOptions usual_surroundings() { return {}; }
+SurroundingOptions usual_surroundings() { return {.automatic = true}; }
 
 SurroundingOptions parse_surroundings(const std::string& text) {
   if (text == "off") return {};

@@ -115,7 +115,7 @@ def main():
     parser.add_argument('--program', default=os.path.join(SOURCE, 'build', 'release', 'blockrand'))
     parser.add_argument('--before', help='an older build of this program')
     parser.add_argument('--osm2world', metavar='JAR')
-    parser.add_argument('--options', default='--lod 3 --formats gltf')
+    parser.add_argument('--options', default='--lod 3 --surroundings off --formats gltf')
     parser.add_argument('--repeat', type=int, default=5)
     parser.add_argument('--gate', action='store_true')
     parser.add_argument('--json', help='a file for the figures')

@@ -37,7 +37,7 @@ def measured(program, extract, values, folder):
     with open(path, 'w', encoding='utf-8') as f:
         f.write(text)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([program, 'build', extract, '-o', out, '--lod', '3', '--formats', 'gltf', '--compress', 'meshopt', '--configs', configs],
+    subprocess.run([program, 'build', extract, '-o', out, '--lod', '3', '--surroundings', 'off', '--formats', 'gltf', '--compress', 'meshopt', '--configs', configs],
                    check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     size = draws = 0

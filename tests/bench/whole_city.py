@@ -99,7 +99,7 @@ def main():
             continue
         out, bbox = os.path.join(a.work, f"box{n}"), ",".join(f"{v:.7f}" for v in boxes[n - 1])
         start = cpu_seconds()
-        built = subprocess.run([a.program, "build", a.extract, "-o", out, "--bbox", bbox, "--lod", a.lod, "--formats", a.formats, "--ground-height", "0", "--no-report",
+        built = subprocess.run([a.program, "build", a.extract, "-o", out, "--bbox", bbox, "--lod", a.lod, "--surroundings", "off", "--formats", a.formats, "--ground-height", "0", "--no-report",
                                 "--no-explain", "--force", "--jobs", a.jobs, "--progress", "none", "-q"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         middle = cpu_seconds()
         row = dict(box=n, bbox=bbox.replace(",", " "), build_exit=built.returncode, models="", build_cpu_s=f"{middle - start:.0f}", validate_cpu_s="", sound="no")

@@ -16,7 +16,7 @@ from model_files import Glb
 sys.path.insert(0, os.path.join(SOURCE, 'tests', 'bench'))
 import glb_counts  # noqa: E402
 
-LOD3 = ('--lod', '3', '--no-report', '--no-explain')
+LOD3 = ('--lod', '3', '--surroundings', 'off', '--no-report', '--no-explain')
 
 
 def gml(folder):
@@ -100,9 +100,9 @@ class Facades(BuildTest):
 
     def test_one_file(self):
         """model.glb as objects, with shared meshes, and as tiles are: all sound, beside tiles of the same bytes."""
-        merged = self.build(SAMPLE, 'single', '--lod', '3', '--no-report', '--formats', 'gltf', '--single-glb')
-        batch = self.build(SAMPLE, 'batch', '--lod', '3', '--no-report', '--formats', 'gltf', '--single-glb', '--objects', 'tile')
-        nodes = self.build(SAMPLE, 'shared', '--lod', '3', '--no-report', '--formats', 'gltf', '--single-glb', '--instancing',
+        merged = self.build(SAMPLE, 'single', '--lod', '3', '--surroundings', 'off', '--no-report', '--formats', 'gltf', '--single-glb')
+        batch = self.build(SAMPLE, 'batch', '--lod', '3', '--surroundings', 'off', '--no-report', '--formats', 'gltf', '--single-glb', '--objects', 'tile')
+        nodes = self.build(SAMPLE, 'shared', '--lod', '3', '--surroundings', 'off', '--no-report', '--formats', 'gltf', '--single-glb', '--instancing',
                            'nodes')
         self.same_files(merged, batch, 'tiles', 'tileset.json')
         for out in (merged, batch, nodes):

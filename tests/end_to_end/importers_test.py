@@ -89,7 +89,7 @@ def colours_of_png(path):
 
 class Model(BuildTest):
     """The sample with facades as one file."""
-    source, options = SAMPLE, ('--lod', '3')
+    source, options = SAMPLE, ('--lod', '3', '--surroundings', 'off')
 
     @classmethod
     def setUpClass(cls):
@@ -206,7 +206,7 @@ class ByF3d(Model):
 
 class SharedMeshesByF3d(ByF3d):
     """With --instancing nodes: a part of the sample, since every window is something to draw by itself."""
-    options = ('--lod', '3', '--instancing', 'nodes', '--bbox', '11.0290,51.4690,11.0305,51.4700')
+    options = ('--lod', '3', '--surroundings', 'off', '--instancing', 'nodes', '--bbox', '11.0290,51.4690,11.0305,51.4700')
 
     def test_it_draws(self):
         picture = self.picture('f3d_nodes.png')

@@ -111,7 +111,7 @@ class Readers(BuildTest):
     def setUpClass(cls):
         super().setUpClass()
         cls.lod2 = cls().build(SAMPLE, 'lod2', '--formats', 'citygml,gpkg', '--no-report', '--no-explain')
-        cls.lod3 = cls().build(SAMPLE, 'lod3', '--lod', '3', '--formats', 'citygml', '--no-report', '--no-explain')
+        cls.lod3 = cls().build(SAMPLE, 'lod3', '--lod', '3', '--surroundings', 'off', '--formats', 'citygml', '--no-report', '--no-explain')
 
     def opened(self, folder, module, program):
         """What a Python program prints of the CityGML files of a build."""

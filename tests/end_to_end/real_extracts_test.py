@@ -191,7 +191,7 @@ if __name__ == '__main__':
     names = SETS.get(wanted) or [n for n in SETS['all'] if wanted in n]
     for n in names:
         formats = 'gltf' if n in BERLIN else 'gltf,citygml'
-        options = ('--lod', '3', '--formats', formats) if detail else ()
+        options = ('--lod', '3', '--surroundings', 'off', '--formats', formats) if detail else ()
         kind = RealFacades if detail else RealExtract
         globals()[re.sub(r'\W', '_', n)] = type(re.sub(r'\W', '_', n), (kind, BuildTest), {'name': n, 'options': options})
     try:

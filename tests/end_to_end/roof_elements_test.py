@@ -15,7 +15,7 @@ level = "city"
 preset = "gz_ornate"
 parameters = {{ {} }}
 '''
-LOD3 = ('--lod', '3', '--formats', 'gltf,citygml,cityjson,gpkg')
+LOD3 = ('--lod', '3', '--surroundings', 'off', '--formats', 'gltf,citygml,cityjson,gpkg')
 
 
 def points(ring):

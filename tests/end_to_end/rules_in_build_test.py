@@ -60,14 +60,14 @@ class RulesInBuild(BuildTest):
         for data in (SAMPLE, extract('berlin-zionskirchplatz-2020.osm')):
             if not data or not os.path.exists(data):
                 continue
-            out = self.build(data, os.path.basename(data) + '.out', '--lod', '3', '--districts', self.rule_set(WALLS))
+            out = self.build(data, os.path.basename(data) + '.out', '--lod', '3', '--surroundings', 'off', '--districts', self.rule_set(WALLS))
             self.assertEqual(codes(out, 'LEAF_DROPPED'), [])
             self.assertEqual(codes(out, 'PARAMETER_UNREAD'), [])
             self.valid(out)
             text = ''.join(open(os.path.join(out, 'citygml', name), encoding='utf-8').read() for name in os.listdir(os.path.join(out, 'citygml')))
             self.assertIn('rule_geometry', text)
             # Again, and by one thread: the same bytes.
-            again = self.build(data, 'again', '--lod', '3', '--districts', self.rule_set(WALLS), '-j', '1')
+            again = self.build(data, 'again', '--lod', '3', '--surroundings', 'off', '--districts', self.rule_set(WALLS), '-j', '1')
             self.same_files(out, again)
             shutil.rmtree(again)
 
@@ -76,7 +76,7 @@ class RulesInBuild(BuildTest):
         for data in (SAMPLE, extract('berlin-zionskirchplatz-2020.osm')):
             if not data or not os.path.exists(data):
                 continue
-            out = self.build(data, os.path.basename(data) + '.lots', '--lod', '3', '--districts', self.rule_set(LOTS))
+            out = self.build(data, os.path.basename(data) + '.lots', '--lod', '3', '--surroundings', 'off', '--districts', self.rule_set(LOTS))
             self.assertEqual(codes(out, 'LEAF_DROPPED'), [])
             self.assertEqual(codes(out, 'PARAMETER_UNREAD'), [])
             for row in codes(out, 'GRAMMAR_ERROR'):
@@ -93,14 +93,14 @@ class RulesInBuild(BuildTest):
             for rule in ('SlabBand', 'Chimney', 'Storey'):  # of osm_massing.cga
                 self.assertIn(f'<gml:name>{rule}</gml:name>', text)
             self.assertNotIn('<bldg:lod3Solid>', text)
-            again = self.build(data, 'again', '--lod', '3', '--districts', self.rule_set(LOTS), '-j', '1')
+            again = self.build(data, 'again', '--lod', '3', '--surroundings', 'off', '--districts', self.rule_set(LOTS), '-j', '1')
             self.same_files(out, again)
             shutil.rmtree(again)
 
     def test_files_for_walls_and_for_footprints_side_by_side(self):
         """What the house before left behind is not told of the next one, whatever houses threads share."""
         rules = self.rule_set(LOTS[:4] + WALLS)
-        first, second = (self.build(SAMPLE, f'jobs{n}', '--lod', '3', '--districts', rules, '-j', n) for n in ('1', '3'))
+        first, second = (self.build(SAMPLE, f'jobs{n}', '--lod', '3', '--surroundings', 'off', '--districts', rules, '-j', n) for n in ('1', '3'))
         self.same_files(first, second)
         self.valid(first)
 
@@ -111,7 +111,7 @@ class RulesInBuild(BuildTest):
         for shape, solid in (('footprint', '<bldg:lod3MultiSurface><MultiSurface gml:id='), ('wall', '<bldg:lod3Solid>')):
             with open(rules, 'w', encoding='utf-8') as f:
                 f.write(text.replace('class = "other"', f'class = "other"\ninitial_shape = "{shape}"'))
-            out = self.build(self.street(), shape, '--lod', '3', '--districts', rules, '--overrides',
+            out = self.build(self.street(), shape, '--lod', '3', '--surroundings', 'off', '--districts', rules, '--overrides',
                              self.place('whole.toml', '[w1]\npreset = "plain_block"\n[w1.w2]\npreset = "plain_block"\n'))
             city = ''.join(open(os.path.join(out, 'citygml', name), encoding='utf-8').read() for name in os.listdir(os.path.join(out, 'citygml')))
             self.assertIn(solid, city, shape)
@@ -142,7 +142,7 @@ class RulesInBuild(BuildTest):
         run = blockrand('grammar', 'check', os.path.join(folder, 'own.cga'))
         self.assertEqual(run.code, 0, run)
         self.assertNotIn('warning', run.err)
-        options = ('--lod', '3', '--districts', rules, '--configs', configs)
+        options = ('--lod', '3', '--surroundings', 'off', '--districts', rules, '--configs', configs)
         out = self.build(street, 'forms', *options, '--cache', cache)
         self.assertEqual(codes(out, 'GRAMMAR_ERROR'), [])
         self.valid(out)
@@ -180,7 +180,7 @@ class RulesInBuild(BuildTest):
         run = blockrand('districts', 'check', rules)
         self.assertEqual(run.code, 2, run)
         self.assertRegex(run.err, r'set\.toml:\d+: rule "typo".*ornamnet')
-        out = self.build(self.street(), 'unread', '--lod', '3', '--districts', rules)
+        out = self.build(self.street(), 'unread', '--lod', '3', '--surroundings', 'off', '--districts', rules)
         self.assertIn('ornamnet', type(self).last.err)
         told = json.dumps(codes(out, 'PARAMETER_UNREAD'))
         self.assertIn('ornamnet', told)
@@ -189,7 +189,7 @@ class RulesInBuild(BuildTest):
     def test_parts_storeys_and_edges_look_as_ordered(self):
         orders = self.place('orders.toml', '[w1.w3]\npreset = "gz_plain"\n[w1.storey.2]\ncolour = "#123457"\n[w1.storey.1]\nmaterial = "brick"\n'
                                            '[w1.storey.9]\ncolour = "#000001"\n[w1.bay.0]\nwidth = 3\n')
-        out = self.build(self.street(), 'ordered', '--lod', '3', '--overrides', orders)
+        out = self.build(self.street(), 'ordered', '--lod', '3', '--surroundings', 'off', '--overrides', orders)
         db = sqlite3.connect(os.path.join(out, 'buildings.gpkg'))
         presets = dict(db.execute('select id, preset from parts'))
         self.assertEqual(presets, {'w1.w2': 'slab', 'w1.w3': 'gz_plain'})
@@ -218,7 +218,7 @@ class RulesInBuild(BuildTest):
         with open(self.street(), encoding='utf-8') as f:
             street = self.place('kept.osm', f.read().replace('v="slab"', 'v="church"'))
         orders = self.place('kept.toml', '[w1.w3]\npreset = "office"\n')
-        options = ('--lod', '3', '--configs', configs, '--overrides', orders)
+        options = ('--lod', '3', '--surroundings', 'off', '--configs', configs, '--overrides', orders)
         seen = set()
         for file, old, new in ((None, '', ''), ('sacred.cga', 'clamp(edge.eaves * 0.3,', 'clamp(edge.eaves * 0.25,'),
                                ('office.cga', 'attr parapet = 0.95', 'attr parapet = 1.15')):

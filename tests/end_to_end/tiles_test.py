@@ -8,7 +8,7 @@ import unittest
 
 from blockrand_run import SAMPLE, BuildTest, blockrand, call, extract, hashes, main, read_json
 
-OPTIONS = ['--lod', '3', '--no-report', '--formats']
+OPTIONS = ['--lod', '3', '--surroundings', 'off', '--no-report', '--formats']
 ALL, GLB = 'gltf,citygml,cityjson', 'gltf'  # towns: GLB alone, for time
 
 

@@ -18,7 +18,7 @@ class Detail(BuildTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.out = cls().build(SAMPLE, 'out', '--lod', '3', '--formats', 'citygml,cityjson,gpkg', '--no-report',
+        cls.out = cls().build(SAMPLE, 'out', '--lod', '3', '--surroundings', 'off', '--formats', 'citygml,cityjson,gpkg', '--no-report',
                               '--single-cityjson', *cls.options)
         cls.number = 0
 

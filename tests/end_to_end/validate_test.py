@@ -143,7 +143,7 @@ class Sound(Validated):
         source = extract('karlsruhe-suedweststadt-2026.osm.pbf')
         if not source:
             self.skipTest('the extracts of ../shared/data are absent')
-        self.sound(self.build(source, 'scaled', '--lod', '3', '--single-glb', '--formats', 'gltf', '--no-report', '--no-explain'))
+        self.sound(self.build(source, 'scaled', '--lod', '3', '--surroundings', 'off', '--single-glb', '--formats', 'gltf', '--no-report', '--no-explain'))
 
     def test_without_report_and_explanations(self):
         self.sound(self.build(SAMPLE, 'bare', '--no-report', '--no-explain'))

@@ -309,7 +309,7 @@ class InCesium(BuildTest):
 
 class FacadesInCesium(InCesium):
     """Windows are instances (EXT_mesh_gpu_instancing) with features of their own. Some houses: software draws."""
-    options = ('--lod', '3', '--bbox', '11.0290,51.4690,11.0305,51.4700')
+    options = ('--lod', '3', '--surroundings', 'off', '--bbox', '11.0290,51.4690,11.0305,51.4700')
 
     def test_a_missing_tile_is_seen(self):
         folder = self.path('missing')
@@ -457,7 +457,7 @@ class CityGml(BuildTest):
 
 class CityGmlOfFacades(CityGml):
     """LoD3: windows and doors as objects with a solid's faces, elements as implicit geometry."""
-    options = ('--lod', '3')
+    options = ('--lod', '3', '--surroundings', 'off')
     test_libcitygml_finds_everything = None  # colours of LoD2
 
     def test_libcitygml_finds_every_object(self):
