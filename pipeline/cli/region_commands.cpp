@@ -257,7 +257,7 @@ int ended(const run::UpdateOptions& options, const run::UpdateSummary& summary, 
     std::fputs(update_report(options, summary).c_str(), stdout);
   if (!summary.too_old.empty()) progress.warn(summary.too_old);
   if (summary.state == run::UpdateState::refused) return kRefused;
-  if (summary.state == run::UpdateState::planned || summary.state == run::UpdateState::shared) return kSuccess;
+  if (s.dry_run || summary.state == run::UpdateState::shared) return kSuccess;
   std::fflush(stdout);
   if (!publish_after_update(s, progress)) return kNotOutward;
   return summary.too_old.empty() ? kSuccess : kTooOld;
@@ -378,11 +378,21 @@ int plan(settings::Settings& s, run::UpdateOptions& options, base::Progress& pro
   return code;
 }
 
+std::string told_as_json(const nlohmann::ordered_json& j) {
+  return j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
 int work(const settings::Settings& s, const run::UpdateOptions& options, base::Progress& progress) {
   if (s.shard.empty()) throw base::UsageError("region work needs --shard I/N: one of those that the plan has");
   const run::SharedWork done = run::work_on_region(options, run::parse_shard(s.shard), progress);
   progress.end();
-  if (!s.quiet)
+  if (s.log_format == base::LogFormat::json)
+    std::fputs(told_as_json({{"shard", s.shard},
+                             {"areas", {{"built", done.built}, {"were_done", done.were_done}}},
+                             {"cpu_seconds", done.cpu_seconds}})
+                   .c_str(),
+               stdout);
+  else if (!s.quiet)
     std::fputs(fmt::format("shard {}: {} areas were built, {} were done already; {} of one processor\n", s.shard,
                            done.built, done.were_done, seconds_text(done.cpu_seconds))
                    .c_str(),
@@ -398,6 +408,7 @@ void refuse_unread(const settings::Settings& s) {
   };
   if (!plans && s.shards != 1) refuse("--shards");
   if (s.region_work != "work" && !s.shard.empty()) refuse("--shard");
+  if (s.region_work == "work" && s.break_lock) refuse("--break-lock: it holds no lock");
   if (!takes_data && !s.data.empty()) refuse("data: region plan takes them in");
 }
 
@@ -418,7 +429,10 @@ int run_region(const std::vector<std::string>& arguments) {
   if (s.region_work == "drop") {
     const int number = run::drop_region_plan(s.region, s.break_lock, progress);
     progress.end();
-    if (!s.quiet) std::fputs(fmt::format("the plan of run {} is given up\n", number).c_str(), stdout);
+    if (s.log_format == base::LogFormat::json)
+      std::fputs(told_as_json({{"state", "dropped"}, {"run", number}}).c_str(), stdout);
+    else if (!s.quiet)
+      std::fputs(fmt::format("the plan of run {} is given up\n", number).c_str(), stdout);
     return kSuccess;
   }
   run::UpdateOptions options = update_options(s, std::move(sha256), progress);

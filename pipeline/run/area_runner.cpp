@@ -86,6 +86,7 @@ std::vector<std::size_t> AreaRunner::run_some(const std::vector<std::size_t>& to
         try {
           outcome = outcome_of(build_area(of_area, part, child));
           outcome.in_part = part.choice.only.has_value();
+          if (outcome.in_part) outcome.looked_into = part.choice.only->size();
         } catch (const WindowTooSmall& reason) {
           outcome.too_small = true, outcome.why_whole = reason.what();
         }

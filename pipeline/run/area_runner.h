@@ -25,10 +25,11 @@ struct AreaOutcome {
   std::vector<outputs::PartySide> open_walls;
   std::vector<surroundings::SharedOutcome> shared_surroundings;
   std::vector<TileTime> slowest_tiles;
-  bool in_part = false;          ///< only some tiles were looked into
-  bool too_small = false;        ///< that was not enough: nothing was built
-  std::string why_whole;         ///< why all were
-  std::uint64_t peak_bytes = 0;  ///< of its process
+  bool in_part = false;           ///< only some tiles were looked into
+  std::uint64_t looked_into = 0;  ///< so many
+  bool too_small = false;         ///< that was not enough: nothing was built
+  std::string why_whole;          ///< why all were
+  std::uint64_t peak_bytes = 0;   ///< of its process
   double cpu_seconds = 0;
 };
 

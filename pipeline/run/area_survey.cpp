@@ -207,7 +207,6 @@ RegionSurvey survey_region(const importers::osm::ExtractStore& store, const Buil
     if (facts.objects > 0) survey.objects[area.tile] = facts.objects;
     centres.insert(centres.end(), facts.centres.begin(), facts.centres.end());
     matched.insert(facts.matched.begin(), facts.matched.end());
-    survey.rows.insert(survey.rows.end(), facts.rows.begin(), facts.rows.end());
     why.merge(facts.why);
     rule_sets.insert(facts.rule_sets.begin(), facts.rule_sets.end());
     if (named_places.empty())
@@ -220,6 +219,9 @@ RegionSurvey survey_region(const importers::osm::ExtractStore& store, const Buil
       AreaFacts& kept = empty[area.tile];
       kept.tiles = std::move(facts.tiles), kept.surroundings = facts.surroundings,
       kept.shared = std::move(facts.shared);
+      kept.rows = std::move(facts.rows);
+    } else {
+      survey.rows.insert(survey.rows.end(), facts.rows.begin(), facts.rows.end());
     }
   }
   survey.unanswered = attributes::unanswered(named_places, rule_sets);
@@ -236,9 +238,10 @@ RegionSurvey survey_region(const importers::osm::ExtractStore& store, const Buil
   const TileRange region = tiles_in(survey.facts.box, footprints::kTileLevel);
   for (auto& [tile, facts] : empty) {
     if (area && std::ranges::any_of(facts.tiles, [&](const model::TileId& t) { return region.holds(t); })) {
-      survey.only_surroundings.insert(tile);
+      survey.only_surroundings.insert(tile);  // it is built, and tells its rows itself
       continue;
     }
+    survey.rows.insert(survey.rows.end(), facts.rows.begin(), facts.rows.end());
     for (std::size_t k = 0; k < survey.surroundings.size(); ++k)
       for (std::size_t s = 0; s < survey.surroundings[k].size(); ++s)
         survey.surroundings[k][s] += facts.surroundings[k][s];

@@ -135,7 +135,7 @@ class AreaBuild {
   /// What another process built. \throws base::InputError  it is damaged
   bool take_shared(AreaParts& parts, std::size_t i) {
     if (shared_ == nullptr) return false;
-    std::optional<AreaOutcome> outcome = shared_->outcome(parts.id(i));
+    std::optional<AreaOutcome> outcome = shared_->outcome(parts.id(i), parts.key(i));
     if (!outcome) return false;
     if (!outcome->in_part) parts.look_into_all(i, outcome->why_whole);
     parts.note_peak(outcome->peak_bytes, outcome->cpu_seconds);
@@ -166,7 +166,7 @@ class AreaBuild {
     run["made_from"] = parts.key(i);
     run["facts"] = parts.facts_key(i);
     if (outcome.in_part)
-      run["looked_into"] = parts.looked_into(i);
+      run["looked_into"] = outcome.looked_into;
     else
       run["looked_into_all_because"] = outcome.why_whole;
     run[kWholeCpuSeconds] = whole_cpu_seconds(parts, i, outcome);

@@ -27,6 +27,7 @@ RegionHealth check_region(const std::string& folder, bool break_lock, base::Prog
   if (!region.exists())
     throw base::UsageError(folder + " is no region. 'blockrand update " + folder + " EXTRACT.osm.pbf' makes one.");
   const RegionLock lock(region, break_lock, progress);
+  refuse_while_planned(region);  // its workers use the kept work
   RegionHealth health;
   std::error_code error;
   progress.begin("check work");

@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <filesystem>
 
+#include "pipeline/base/error.h"
 #include "pipeline/base/text.h"
+#include "pipeline/run/changes_map.h"
 #include "pipeline/run/estimate.h"
 #include "pipeline/run/region_metrics.h"
 #include "pipeline/run/region_state.h"
@@ -93,6 +98,15 @@ std::string end_run(const UpdateOptions& options, const RegionFolder& region, Ru
   }
   if (!end.reason.empty()) call_hook("notify command", options.region.notify, region.path(), end, progress);
   return stale;
+}
+
+void write_changes(const RegionFolder& region, int number, const UpdateSummary& summary) {
+  write_whole(region.changes(number) + ".json", changes_json(summary.changes, summary.gates));
+  write_changes_layers(summary.changes, region.changes(number) + ".gpkg.part");
+  if (std::rename((region.changes(number) + ".gpkg.part").c_str(), (region.changes(number) + ".gpkg").c_str()) != 0)
+    throw base::OutputError(region.changes(number) + ".gpkg: cannot be written: " + std::strerror(errno));
+  write_whole(region.changes(number) + ".html",
+              changes_page(region.name() + ", run " + std::to_string(number), summary.changes, summary.gates));
 }
 
 }  // namespace blockrand::run

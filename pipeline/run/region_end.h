@@ -28,4 +28,7 @@ void begin_run(const RegionFolder& region);
 std::string end_run(const UpdateOptions& options, const RegionFolder& region, RunEnd end,
                     const nlohmann::ordered_json& line, base::Progress& progress);
 
+/// log/N.changes.json, .html and .gpkg. \throws base::OutputError
+void write_changes(const RegionFolder& region, int number, const UpdateSummary& summary);
+
 }  // namespace blockrand::run

@@ -8,6 +8,7 @@
 
 #include "importers/imagery/image_files.h"
 #include "importers/osm/apply_changes.h"
+#include "importers/polygons/read_polygons.h"
 #include "pipeline/attributes/overrides.h"
 #include "pipeline/attributes/rule_sets.h"
 #include "pipeline/base/error.h"
@@ -115,6 +116,56 @@ Plan plan_of(const UpdateOptions& options, const RegionFolder& region, std::opti
                            ? "a change file: " + plan.changes.front()
                            : fmt::format("{} change files, the last one {}", plan.changes.size(), plan.changes.back()));
   return plan;
+}
+
+namespace {
+
+/// Above this size of its data a region is built in areas, where its settings say nothing else. Bytes: about 100,000 buildings, which
+/// take 400 MB of memory at once.
+constexpr std::uint64_t kLargeRegion = 10'000'000;
+
+}  // namespace
+
+int areas_for(const UpdateOptions& options, const std::string& data, std::optional<int> current,
+              const DataState& before) {
+  constexpr int kAtOnce = 1;  // half of the globe as one area
+  if (options.build.areas > 0) return options.build.areas == kAtOnce ? 0 : options.build.areas;
+  if (current) return before.areas;
+  std::error_code error;
+  const bool large = fs::file_size(data, error) > kLargeRegion && !error;
+  const bool as_a_whole = options.build.outputs.single_glb || options.build.outputs.single_cityjson ||
+                          !options.build.imagery.images.empty() || options.build.bbox;
+  return large && !as_a_whole ? kUsualAreas : 0;
+}
+
+BuildOptions build_options_for(const UpdateOptions& options, const RegionFolder& region, int number,
+                               std::optional<int> current, const DataState& before, int areas) {
+  BuildOptions build = options.build;
+  build.surroundings = build.surroundings.settled(build.lod);
+  build.name = region.name();
+  build.input = region.data(number);
+  build.output = region.build(number);
+  build.force = false;
+  build.cache = region.cache();
+  build.settings = settings_sha256(options);
+  build.areas = areas;
+  if (current) build.earlier = region.build(*current);
+  // The first build chose; what comes in later must not choose anew.
+  if (build.crs.empty() && current && before.crs_chosen) {
+    const Json record = read_json(region.build(*current) + "/build.json");
+    if (record.contains("crs")) build.crs = text_in(record["crs"], "code");
+  }
+  return build;
+}
+
+std::optional<importers::osm::ClipPolygon> polygon_of(const RegionOptions& options) {
+  const std::string& path = options.polygon;
+  if (path.empty()) return std::nullopt;
+  if (path.ends_with(".poly")) return importers::osm::read_poly_file(path);
+  std::vector<importers::osm::ClipPolygon::Rings> polygons;
+  for (importers::polygons::PolygonFeature& feature : importers::polygons::read_polygons(path))
+    std::ranges::move(feature.polygons, std::back_inserter(polygons));
+  return importers::osm::ClipPolygon(polygons);
 }
 
 }  // namespace blockrand::run

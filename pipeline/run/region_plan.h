@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "importers/osm/apply_changes.h"
 #include "pipeline/run/region_folder.h"
 #include "pipeline/run/region_state.h"
 #include "pipeline/run/update_region.h"
@@ -36,5 +37,20 @@ std::uint64_t next_sequence(const RegionOptions& options, std::optional<std::uin
 /// \throws base::InputError  a gap in the change files
 Plan plan_of(const UpdateOptions& options, const RegionFolder& region, std::optional<int> current,
              const DataState& state);
+
+/// About 6 by 10 km at 51 degrees: an area of the middle of a large city takes 540 MB at LoD3 (docs/internal/RESULTS.md).
+inline constexpr int kUsualAreas = 11;
+
+/// In which areas a region is built: what the settings say, else what its first build chose, as areas that change their size change every
+/// path; 0: as a whole. \param data  the file of its data \param before  of the build that is published
+int areas_for(const UpdateOptions& options, const std::string& data, std::optional<int> current,
+              const DataState& before);
+
+/// What a run asks `build` for. \param areas  areas_for
+BuildOptions build_options_for(const UpdateOptions& options, const RegionFolder& region, int number,
+                               std::optional<int> current, const DataState& before, int areas);
+
+/// What the data are cut to; nothing: they are not. \throws base::InputError
+std::optional<importers::osm::ClipPolygon> polygon_of(const RegionOptions& options);
 
 }  // namespace blockrand::run

@@ -55,6 +55,7 @@ void RegionShards::write(const RegionFolder& region) const {
     j["areas"][text_of(area.id)] = {{"shard", area.shard},
                                     {"buildings", area.objects},
                                     {"in_part", area.in_part},
+                                    {"made_from", area.key},
                                     {"cpu_seconds", std::nearbyint(area.cpu_seconds * 1000) / 1000}};
   write_whole(plan_file(region), dumped(j, 1));
 }
@@ -74,7 +75,8 @@ RegionShards RegionShards::read(const RegionFolder& region) {
       PlannedArea& planned = plan.areas.emplace_back();
       planned.id = parse_tile(name, "areas", kLowestArea);
       planned.shard = area.at("shard").get<int>(), planned.objects = area.at("buildings").get<std::uint64_t>();
-      planned.in_part = area.at("in_part").get<bool>(), planned.cpu_seconds = area.at("cpu_seconds").get<double>();
+      planned.in_part = area.at("in_part").get<bool>(), planned.key = area.at("made_from").get<std::string>();
+      planned.cpu_seconds = area.at("cpu_seconds").get<double>();
     }
   } catch (const std::exception&) {
     throw base::InputError(plan_file(region), "", "is damaged", "Give the plan up and make a new one: " + drop(region));
@@ -116,7 +118,7 @@ void RegionShards::check_done(const RegionFolder& region) const {
   std::set<int> lacking;
   std::size_t missing = 0;
   for (const PlannedArea& area : areas)
-    if (!work.is_done(area.id)) ++missing, lacking.insert(area.shard);
+    if (!work.is_done(area.id, area.key)) ++missing, lacking.insert(area.shard);
   if (missing == 0) return;
   std::string names;
   for (const int shard : lacking) names += fmt::format("{}{}/{}", names.empty() ? "" : ", ", shard, shards);
@@ -137,7 +139,7 @@ std::optional<PlanStatus> plan_status(const RegionFolder& region) {
   const SharedAreas work = plan.shared(region);
   PlanStatus status{plan.number, plan.shards, plan.areas.size(), 0};
   for (const PlannedArea& area : plan.areas)
-    if (work.is_done(area.id)) ++status.done;
+    if (work.is_done(area.id, area.key)) ++status.done;
   return status;
 }
 
@@ -147,6 +149,13 @@ void refuse_while_planned(const RegionFolder& region) {
       fmt::format("a plan for {} is under way, and nothing else is built meanwhile. Work on its shards, then: "
                   "blockrand region finish {}. Or give it up: {}",
                   region.path(), region.path(), drop(region)));
+}
+
+bool remove_broken_plan(const RegionFolder& region) {
+  std::error_code error;
+  if (is_planned(region) || !fs::exists(region.plan(), error)) return false;
+  fs::remove_all(region.plan(), error);
+  return true;
 }
 
 void remove_plan(const RegionFolder& region) {

@@ -62,5 +62,7 @@ std::optional<PlanStatus> plan_status(const RegionFolder& region);
 /// \throws base::UsageError  a plan is under way
 void refuse_while_planned(const RegionFolder& region);
 void remove_plan(const RegionFolder& region);
+/// What a plan left that was broken off, or processes that outlived theirs. \returns  whether there was anything
+bool remove_broken_plan(const RegionFolder& region);
 
 }  // namespace blockrand::run

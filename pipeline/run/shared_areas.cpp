@@ -14,7 +14,6 @@
 #include "pipeline/run/area_overview.h"
 #include "pipeline/run/earlier_area.h"
 #include "pipeline/run/region_folder.h"
-#include "pipeline/run/tile_key.h"
 
 namespace blockrand::run {
 
@@ -26,7 +25,7 @@ namespace {
 
 /// What a mark says.
 struct HandedIn {
-  std::string program;
+  std::string key;            ///< AreaParts::key: program, settings, name and data
   std::string record_sha256;  ///< of the area's build.json
   AreaOutcome outcome;
 };
@@ -112,47 +111,56 @@ std::string SharedAreas::mark(const TileId& area) const {
   return fmt::format("{}/done/{}-{}-{}", folder_, area.level, area.x, area.y);
 }
 
-bool SharedAreas::is_done(const TileId& area) const {
-  std::error_code error;
-  return fs::is_regular_file(mark(area), error);
-}
-
-std::optional<AreaOutcome> SharedAreas::outcome(const TileId& area) const {
-  if (!is_done(area)) return std::nullopt;
-  const auto damaged = [&](const std::string& what) {
-    std::error_code error;
-    fs::remove(mark(area), error);
-    return base::InputError(place(area), "", what, "Run the shard again that has it: it builds this area alone");
-  };
+bool SharedAreas::is_done(const TileId& area, const std::string& key) const {
   try {
-    auto told = base::unpacked<HandedIn>(bytes_of(mark(area)));
-    if (told.program != program_identity()) throw damaged("was built by another version of the program");
-    std::vector<std::string> paths;
-    if (!area_is_whole(place(area), told.record_sha256, paths)) throw damaged("is damaged");
-    return std::move(told.outcome);
+    return base::unpacked<HandedIn>(bytes_of(mark(area))).key == key;
   } catch (const base::UnpackError&) {
-    throw damaged("is damaged");
-  } catch (const nlohmann::json::exception&) {
-    throw damaged("is damaged");
+    return false;
   }
 }
 
-void SharedAreas::hand_in(const TileId& area, AreaOutcome outcome) const {
-  const std::string to = place(area);
+std::optional<AreaOutcome> SharedAreas::outcome(const TileId& area, const std::string& key) const {
+  if (!is_done(area, key)) return std::nullopt;
+  auto told = base::unpacked<HandedIn>(bytes_of(mark(area)));
+  if (is_whole(area, told.record_sha256)) return std::move(told.outcome);
   std::error_code error;
-  if (is_done(area)) {
-    fs::remove_all(outcome.folder, error);
-    return;
+  fs::remove(mark(area), error);
+  throw base::InputError(place(area), "", "is damaged", "Run the shard again that has it: it builds this area alone");
+}
+
+bool SharedAreas::is_whole(const TileId& area, const std::string& record_sha256) const {
+  try {
+    std::vector<std::string> paths;
+    return area_is_whole(place(area), record_sha256, paths);
+  } catch (const nlohmann::json::exception&) {
+    return false;
   }
+}
+
+void SharedAreas::hand_in(const TileId& area, const std::string& key, AreaOutcome outcome) const {
+  const std::string from = outcome.folder, to = place(area), record = base::sha256_file(from + "/build.json");
+  std::error_code error;
   make_folder(fs::path(to).parent_path().string());
   make_folder(folder_ + "/done");
-  fs::remove_all(to, error);  // of a process that died before it said so
-  fs::rename(outcome.folder, to, error);
-  if (error) throw base::OutputError(to + ": cannot be written: " + error.message());
+  sync_disk(from);
+  // A folder is renamed onto nothing, or onto an empty one: what another process handed in is never taken away while it is read.
+  fs::rename(from, to, error);
+  if (error && fs::exists(to)) {
+    if (is_whole(area, record)) {  // it was faster
+      fs::remove_all(from, error);
+    } else {  // of other data, or what a disk that lost power left
+      fs::rename(to, parts() + "/replaced-" + std::to_string(area.x) + "-" + std::to_string(area.y), error);
+      fs::rename(from, to, error);
+      if (error) throw base::OutputError(to + ": cannot be written: " + error.message());
+    }
+  } else if (error) {
+    throw base::OutputError(to + ": cannot be written: " + error.message());
+  }
   outcome.folder = to;
-  sync_disk(to);
-  write_whole(mark(area),
-              base::packed(HandedIn{program_identity(), base::sha256_file(to + "/build.json"), std::move(outcome)}));
+  const std::string written = parts() + "/mark";
+  write_whole(written, base::packed(HandedIn{key, record, std::move(outcome)}));
+  fs::rename(written, mark(area), error);
+  if (error) throw base::OutputError(mark(area) + ": cannot be written: " + error.message());
 }
 
 std::vector<std::string> SharedAreas::unended() const {
@@ -186,7 +194,8 @@ std::vector<PlannedArea> plan_areas(const BuildOptions& options, const SharedAre
   const AreaCosts costs(parts);
   std::vector<PlannedArea> areas;
   for (std::size_t i = 0; i < parts.size(); ++i)
-    if (!parts.earlier_files(i)) areas.push_back({parts.id(i), parts.objects(i), parts.in_part(i), costs.of(i)});
+    if (!parts.earlier_files(i))
+      areas.push_back({parts.id(i), parts.objects(i), parts.in_part(i), parts.key(i), costs.of(i)});
   balance(areas, shards);
   return areas;
 }
@@ -201,7 +210,7 @@ SharedWork work_on_areas(const BuildOptions& options, const SharedAreas& shared,
   std::uint64_t objects = 0, done = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (!areas.contains(parts.id(i))) continue;
-    if (shared.is_done(parts.id(i))) {
+    if (shared.is_done(parts.id(i), parts.key(i))) {
       ++work.were_done;
       continue;
     }
@@ -214,7 +223,7 @@ SharedWork work_on_areas(const BuildOptions& options, const SharedAreas& shared,
       todo, [&](const TileId& area) { return shared.parts() + "/" + area_path(area); },
       [&](std::size_t i, AreaOutcome outcome) {
         ++work.built, work.cpu_seconds += outcome.cpu_seconds;
-        shared.hand_in(parts.id(i), std::move(outcome));
+        shared.hand_in(parts.id(i), parts.key(i), std::move(outcome));
         done += parts.objects(i);
         progress.advance_to(done);
       });

@@ -27,13 +27,14 @@ class SharedAreas {
   /// Where this process builds areas.
   std::string parts() const;
 
-  /// What the process told that built an area; nothing where none has yet.
-  /// \throws base::InputError  it is damaged: is told, and to be built again
-  std::optional<AreaOutcome> outcome(const model::TileId& area) const;
-  bool is_done(const model::TileId& area) const;
+  /// What the process told that built an area; nothing where none has yet, or from other data or settings.
+  /// \param key  AreaParts::key
+  /// \throws base::InputError  it is damaged: it counts as not done from now on
+  std::optional<AreaOutcome> outcome(const model::TileId& area, const std::string& key) const;
+  bool is_done(const model::TileId& area, const std::string& key) const;
   /// Takes an area in that this process built. One that another process has handed in meanwhile stays: it is the same.
   /// \throws base::OutputError
-  void hand_in(const model::TileId& area, AreaOutcome outcome) const;
+  void hand_in(const model::TileId& area, const std::string& key, AreaOutcome outcome) const;
 
   /// Processes that began and did not end: they work, or are gone.
   std::vector<std::string> unended() const;
@@ -41,6 +42,7 @@ class SharedAreas {
 
  private:
   std::string mark(const model::TileId& area) const;
+  bool is_whole(const model::TileId& area, const std::string& record_sha256) const;
   std::string folder_;
 };
 
@@ -49,6 +51,7 @@ struct PlannedArea {
   model::TileId id;
   std::uint64_t objects = 0;  ///< mapped, in it
   bool in_part = false;       ///< only some of its tiles are looked into
+  std::string key{};          ///< AreaParts::key
   double cpu_seconds = 0;     ///< expected, from what it, or others, took
   int shard = 0;              ///< from 1
 };

@@ -72,7 +72,8 @@ TileRange tiles_in(const georef::GeoBox& box, int level) {
   };
   TileRange range{tile_at(box.west, box.south), tile_at(box.east, box.north)};
   // Across 180 degrees: what lies between them is everything.
-  if (box.east > 180 || box.west < -180) range.low.x = 0, range.high.x = (std::uint32_t{2} << level) - 1;
+  if (box.east > 180 || box.west < -180 || box.west > box.east)
+    range.low.x = 0, range.high.x = (std::uint32_t{2} << level) - 1;
   return range;
 }
 

@@ -69,64 +69,6 @@ std::string_view word(UpdateState state) {
   return "";
 }
 
-void write_changes(const RegionFolder& region, int number, const UpdateSummary& summary) {
-  write_whole(region.changes(number) + ".json", changes_json(summary.changes, summary.gates));
-  write_changes_layers(summary.changes, region.changes(number) + ".gpkg.part");
-  if (std::rename((region.changes(number) + ".gpkg.part").c_str(), (region.changes(number) + ".gpkg").c_str()) != 0)
-    throw base::OutputError(region.changes(number) + ".gpkg: cannot be written: " + std::strerror(errno));
-  write_whole(region.changes(number) + ".html",
-              changes_page(region.name() + ", run " + std::to_string(number), summary.changes, summary.gates));
-}
-
-/// Above this size of its data a region is built in areas, where its settings say nothing else. Bytes: about 100,000 buildings, which
-/// take 400 MB of memory at once.
-constexpr std::uint64_t kLargeRegion = 10'000'000;
-/// About 6 by 10 km at 51 degrees: an area of the middle of a large city takes 540 MB at LoD3 (docs/internal/RESULTS.md).
-constexpr int kUsualAreas = 11;
-
-/// What the settings say, else what the region's first build chose: areas that change their size change every path.
-int areas_for(const UpdateOptions& options, const std::string& data, std::optional<int> current,
-              const DataState& before) {
-  constexpr int kAtOnce = 1;  // half of the globe as one area
-  if (options.build.areas > 0) return options.build.areas == kAtOnce ? 0 : options.build.areas;
-  if (current) return before.areas;
-  std::error_code error;
-  const bool large = fs::file_size(data, error) > kLargeRegion && !error;
-  const bool as_a_whole = options.build.outputs.single_glb || options.build.outputs.single_cityjson ||
-                          !options.build.imagery.images.empty() || options.build.bbox;
-  return large && !as_a_whole ? kUsualAreas : 0;
-}
-
-BuildOptions build_options_for(const UpdateOptions& options, const RegionFolder& region, int number,
-                               std::optional<int> current, const DataState& before, int areas) {
-  BuildOptions build = options.build;
-  build.name = region.name();
-  build.input = region.data(number);
-  build.output = region.build(number);
-  build.force = false;
-  build.cache = region.cache();
-  build.settings = settings_sha256(options);
-  build.areas = areas;
-  if (current) build.earlier = region.build(*current);
-  // The first build chose; what comes in later must not choose anew.
-  if (build.crs.empty() && current && before.crs_chosen) {
-    const Json record = read_json(region.build(*current) + "/build.json");
-    if (record.contains("crs")) build.crs = text_in(record["crs"], "code");
-  }
-  return build;
-}
-
-/// What the data are cut to. \throws base::InputError
-std::optional<importers::osm::ClipPolygon> polygon_of(const RegionOptions& options) {
-  const std::string& path = options.polygon;
-  if (path.empty()) return std::nullopt;
-  if (path.ends_with(".poly")) return importers::osm::read_poly_file(path);
-  std::vector<importers::osm::ClipPolygon::Rings> polygons;
-  for (importers::polygons::PolygonFeature& feature : importers::polygons::read_polygons(path))
-    std::ranges::move(feature.polygons, std::back_inserter(polygons));
-  return importers::osm::ClipPolygon(polygons);
-}
-
 class Updater {
  public:
   Updater(const UpdateOptions& options, const RegionFolder& region, base::Progress& progress)
@@ -548,6 +490,7 @@ UpdateSummary run_to_its_end(const UpdateOptions& options, const RegionFolder& r
 void tidy(const RegionFolder& region, base::Progress& progress) {
   for (const std::string& path : region.remove_unfinished())
     progress.warn("removed " + path + ": left by a run that was broken off");
+  if (remove_broken_plan(region)) progress.warn("removed " + region.plan() + ": left by a plan that was broken off");
   // A run that died between its gates and the switch left the region's first build without a pointer.
   std::error_code error;
   const std::string pointer = region.path() + "/current";
@@ -599,6 +542,15 @@ UpdateSummary plan_region(const UpdateOptions& options, int shards, base::Progre
   return run_from_its_begin(options, progress, [&](Updater& updater) { return updater.plan(shards); });
 }
 
+namespace {
+
+bool is_finished(const RegionFolder& region, const RegionShards& plan) {
+  std::error_code error;
+  return fs::exists(region.state(plan.number), error) && region.current() == plan.number;
+}
+
+}  // namespace
+
 UpdateSummary finish_region(const UpdateOptions& options, base::Progress& progress) {
   check_explained(options);
   const RegionFolder region(options.folder);
@@ -606,9 +558,20 @@ UpdateSummary finish_region(const UpdateOptions& options, base::Progress& progre
   RegionShards plan;
   lock_or_notice(options, region, lock, progress, [&] {
     plan = RegionShards::read(region);
+    if (is_finished(region, plan)) return;
     plan.check_same(region, settings_sha256(options));
     plan.check_done(region);
   });
+  if (is_finished(region, plan)) {  // by a run that was killed just after
+    remove_plan(region);
+    progress.warn(fmt::format("run {} was published already", plan.number));
+    UpdateSummary done;
+    done.number = plan.number, done.before = plan.before, done.folder = region.build(plan.number);
+    return done;
+  }
+  // A run that was broken off between building and publishing left a build that nobody published.
+  std::error_code error;
+  fs::remove_all(region.build(plan.number), error);
   if (plan.tell_unended(region, progress)) WorkCache::mark_open(region.cache());
   const UpdateSummary summary =
       run_to_its_end(options, region, progress, [&](Updater& updater) { return updater.finish(plan); });

@@ -136,6 +136,71 @@ class Shards(ShardTest):
         self.refused(blockrand('region', 'plan', whole, extract), 1, 'areas = ')
         self.assertFalse(os.path.exists(os.path.join(whole, 'plan')))
 
+    def test_what_stands_around_the_houses(self):
+        """At LoD3, where it is made without being asked for."""
+        map_ = Map(town(150))
+        folder = self.region('around', SETTINGS.replace('lod = 2', 'lod = 3'))
+        self.plan(folder, map_.write(self.path('around.osm')), shards=2)
+        for shard in ('1/2', '2/2'):
+            self.region_command('work', folder, '--shard', shard)
+        self.region_command('finish', folder)
+        self.assertIn('surroundings', json.dumps(read_json(self.current(folder), 'build.json')['configuration']))
+        self.same_build(self.current(folder), self.clean(map_, folder, '--lod', '3', '--areas', LEVEL))
+
+    def test_the_same_shard_twice_at_once(self):
+        map_ = Map(town(300))
+        folder = self.region('twice', SETTINGS)
+        self.plan(folder, map_.write(self.path('twice.osm')), shards=1)
+        workers = [self.start(folder, 1, 1) for _ in range(3)]
+        for w in workers:
+            words = w.communicate()[0]
+            self.assertEqual(w.returncode, 0, words)
+        self.region_command('finish', folder)
+        self.same_build(self.current(folder), self.clean(map_, folder, '--lod', '2', '--areas', LEVEL))
+
+    def test_areas_of_another_plan_do_not_count(self):
+        """A process that outlived its plan hands in what it built of other settings."""
+        folder = self.region('stale', SETTINGS)
+        extract = Map(town(300)).write(self.path('stale.osm'))
+        self.plan(folder, extract, shards=1)
+        self.region_command('work', folder, '--shard', '1/1')
+        old = self.path('old_plan')
+        shutil.copytree(os.path.join(folder, 'plan'), old)
+        self.region_command('drop', folder)
+        with open(os.path.join(folder, 'region.toml'), 'a', encoding='utf-8') as f:
+            f.write('seed = 5\n')
+        self.plan(folder, extract, shards=1)
+        for name in ('areas', 'done'):
+            shutil.copytree(os.path.join(old, name), os.path.join(folder, 'plan', name))
+        self.refused(blockrand('region', 'finish', folder), 1, 'missing', '1/1')
+        self.assertIn(', 0 were done already', self.region_command('work', folder, '--shard', '1/1').out)
+        self.region_command('finish', folder)
+        self.published(folder, '000001')
+
+    def test_a_finish_that_was_broken_off_is_run_again(self):
+        map_ = Map(town(300))
+        folder = self.region('late', SETTINGS)
+        self.plan(folder, map_.write(self.path('late.osm')), shards=1)
+        self.region_command('work', folder, '--shard', '1/1')
+        plan = self.path('late_plan')
+        shutil.copytree(os.path.join(folder, 'plan'), plan)
+        # Built, but not published.
+        left = os.path.join(folder, 'builds', '000001')
+        os.makedirs(left)
+        shutil.copy(os.path.join(plan, 'areas', areas(plan)[0], 'build.json'), left)
+        self.region_command('finish', folder)
+        self.same_build(self.current(folder), self.clean(map_, folder, '--lod', '2', '--areas', LEVEL))
+        # Published, but the plan not yet removed.
+        shutil.copytree(plan, os.path.join(folder, 'plan'))
+        self.assertIn('published already', self.region_command('finish', folder).err)
+        self.assertFalse(os.path.exists(os.path.join(folder, 'plan')))
+        self.published(folder, '000001')
+        # A plan without its last file is none.
+        shutil.copytree(plan, os.path.join(folder, 'plan'))
+        os.remove(os.path.join(folder, 'plan', 'plan.json'))
+        self.assertIn('broken off', self.update(folder).err)
+        self.assertFalse(os.path.exists(os.path.join(folder, 'plan')))
+
     def test_a_gate_refuses(self):
         """A vandalised extract does not come in by way of shards, either."""
         map_ = Map(town(300))
