@@ -60,7 +60,7 @@ settings::CommandText publish_text() {
   return {
       .name = "publish",
       .summary = "sends a build to buckets, web roots, archives and databases",
-      .usage = "SOURCE (--command COMMAND | --to FOLDER | --archive FILE.3tz | --postgis PG:...) [options]",
+      .usage = "SOURCE (--command COMMAND | --web-root FOLDER | --archive FILE.3tz | --postgis PG:...) [options]",
       .description =
           "Sends what differs from what was sent last, in an order in which no reader is led to a missing file: "
           "contents, "
@@ -70,7 +70,7 @@ settings::CommandText publish_text() {
           "Of a region the published build is sent, and what stands below [publish] in its region.toml holds; "
           "`blockrand update` then does the same after each published build.",
       .options = settings::kPublish,
-      .examples = {{"blockrand publish leipzig --to /srv/www/leipzig", "a web root on this machine"},
+      .examples = {{"blockrand publish leipzig --web-root /srv/www/leipzig", "a web root on this machine"},
                    {"blockrand publish leipzig --command 'sh to_bucket.sh'", "docs/publishing.md has such commands"},
                    {"blockrand publish leipzig --postgis PG:dbname=city", "tables of a PostGIS database"},
                    {"blockrand publish out --archive leipzig.3tz", "the tiles in one file"}},
@@ -93,7 +93,7 @@ int run_publish(const std::vector<std::string>& arguments) {
   const outward::PublishSource source = outward::publish_source(s.source);
   if (!s.publishing.any())
     throw base::UsageError(
-        "nowhere to send to. Add --command, --to, --archive or --postgis, or name one below [publish] in "
+        "nowhere to send to. Add --command, --web-root, --archive or --postgis, or name one below [publish] in "
         "region.toml.");
   const outward::PublishReport report = outward::publish(s.publishing, source, s.dry_run, progress);
   progress.end();

@@ -128,6 +128,8 @@ std::string_view name(Step step) {
 }
 
 Step step_of(std::string_view path) {
+  // Servers hand it out as the plain file (build --precompress).
+  if (path.ends_with(".gz")) return step_of(path.substr(0, path.size() - 3));
   const std::string_view file = path.substr(path.rfind('/') == std::string_view::npos ? 0 : path.rfind('/') + 1);
   if (file == "build.json") return Step::record;
   if (file == "tileset.json" || path.starts_with("tilesets/")) return Step::tilesets;
@@ -174,6 +176,10 @@ std::map<std::string, BuildFile> files_of_build(const std::string& folder) {
   add_record(folder, "", files);
   for (const std::string& area : outputs::area_folders(folder)) add_record(folder, area + "/", files);
   if (files.contains("tileset.json")) Levels(folder, files).level_of("tileset.json");
+  for (auto& [path, file] : files)
+    if (path.ends_with(".gz"))
+      if (const auto plain = files.find(path.substr(0, path.size() - 3)); plain != files.end())
+        file.step = plain->second.step, file.level = plain->second.level;
   return files;
 }
 

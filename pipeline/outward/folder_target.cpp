@@ -90,10 +90,11 @@ void refuse_own_folders(const std::string& folder) {
   std::error_code error;
   for (fs::path at = fs::weakly_canonical(fs::absolute(folder)); at.has_relative_path(); at = at.parent_path())
     if (fs::exists(at / "region.toml", error))
-      throw base::UsageError("--to " + folder + " lies in the region " + at.string() + ". Name a web root beside it.");
+      throw base::UsageError("--web-root " + folder + " lies in the region " + at.string() +
+                             ". Name a web root beside it.");
   // A web root has the build.json of what was sent to it, but not run.json.
   if (fs::exists(folder + "/run.json", error))
-    throw base::UsageError("--to " + folder + " is a build itself. Name a web root beside it.");
+    throw base::UsageError("--web-root " + folder + " is a build itself. Name a web root beside it.");
 }
 
 }  // namespace

@@ -47,6 +47,12 @@ std::string area_of(const std::string& path) {
                                                                : std::string();
 }
 
+/// A column that holds less (real instead of double precision) is of another type, too.
+bool same_type(OGRFieldDefnH a, OGRFieldDefnH b) {
+  return api().OGR_Fld_GetType(a) == api().OGR_Fld_GetType(b) &&
+         api().OGR_Fld_GetSubType(a) == api().OGR_Fld_GetSubType(b);
+}
+
 class Database {
  public:
   Database(const PostgisPlace& place, const PostgisBuild& build, const std::map<std::string, BuildFile>& files,
@@ -273,7 +279,7 @@ class Database {
         add_column(to, field);
         fresh.insert(column);
         ++summary_.columns_added;
-      } else if (api().OGR_Fld_GetType(api().OGR_FD_GetFieldDefn(has, there)) != api().OGR_Fld_GetType(field)) {
+      } else if (!same_type(field, api().OGR_FD_GetFieldDefn(has, there))) {
         throw base::UsageError(
             fmt::format("{}: column {} of {} is of another type than this build's. Remove the table, and it is made "
                         "anew: DROP TABLE {};",
@@ -299,8 +305,8 @@ class Database {
     OGRLayerH to = table_for(file, from, name);
     const std::string key = key_of(from), where = std::string(kAreaColumn) + " = " + sql_literal(area);
     std::map<std::string, std::uint64_t> before, now;
-    for (const auto& row : select(
-             fmt::format("SELECT coalesce({}, ''), {} FROM {} WHERE {}", sql_name(key), kRowColumn, table(name), where)))
+    for (const auto& row : select(fmt::format("SELECT coalesce({}, ''), {} FROM {} WHERE {}", sql_name(key), kRowColumn,
+                                              table(name), where)))
       before[row[0]] += static_cast<std::uint64_t>(std::stoll(row[1]));
     RowReader reader(from, key);
     if (!before.empty())

@@ -67,7 +67,7 @@ class Publisher {
     check_target_name(options_.target);
     files_ = files_of_build(source_.build);
     if (!options_.command.empty()) part("command", options_.target, [this] { return by_command(); });
-    if (!options_.to.empty()) part("to", options_.to, [this] { return into_folder(); });
+    if (!options_.web_root.empty()) part("web-root", options_.web_root, [this] { return into_folder(); });
     if (!options_.archive.empty()) part("archive", options_.archive, [this] { return into_archive(); });
     if (!options_.postgis.empty())
       part("postgis", without_password(options_.postgis), [this] { return into_database(); });
@@ -87,8 +87,7 @@ class Publisher {
   }
 
   SendOptions send_options() const {
-    return {
-        .keep_deleted_hours = options_.keep_deleted, .batch = options_.batch, .gzip = options_.precompress == "gzip"};
+    return {.keep_deleted_hours = options_.keep_deleted, .batch = options_.batch, .gzip = options_.variants == "gzip"};
   }
 
   Figures send(const Target& target, TargetState& state) {
@@ -119,9 +118,9 @@ class Publisher {
   }
 
   Figures into_folder() {
-    TargetState state(note("to.state"));
-    const Target target = folder_target(source_.build, options_.to);
-    const std::string place = fs::weakly_canonical(fs::absolute(options_.to)).string();
+    TargetState state(note("web-root.state"));
+    const Target target = folder_target(source_.build, options_.web_root);
+    const std::string place = fs::weakly_canonical(fs::absolute(options_.web_root)).string();
     if (state.note("folder") != place) state.clear();  // of another web root
     state.set_note("folder", place);
     return send(target, state);

@@ -27,7 +27,7 @@ PublishSource publish_source(const std::string& place);
 
 /// How one place went.
 struct PublishedPart {
-  std::string what;                                            ///< command, to, archive, postgis
+  std::string what;                                            ///< command, web-root, archive, postgis
   std::string place;                                           ///< without passwords
   std::vector<std::pair<std::string, std::uint64_t>> figures;  ///< "files sent" → 12
   std::string failure;                                         ///< why it is to do; empty: it is done

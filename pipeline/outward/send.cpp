@@ -9,7 +9,7 @@
 namespace blockrand::outward {
 namespace {
 
-constexpr const char* kPrecompress = "precompress";  // note of a target: which variants lie there
+constexpr const char* kVariants = "variants";  // note of a target: which variants lie there
 constexpr const char* kGzip = "gzip";
 
 /// Steps in batches of at most `most` files; a batch never has files of two steps.
@@ -29,14 +29,17 @@ class Sender {
   Sender(const std::string& build, const std::map<std::string, BuildFile>& files, const Target& target,
          TargetState& state, const SendOptions& options, base::Progress& progress)
       : files_(files), target_(target), state_(state), options_(options), progress_(progress) {
-    if (options.gzip) variant_ = [build](const BuildFile& file) { return gzip_variant(build, file); };
+    if (options.gzip)
+      variant_ = [this, build](const BuildFile& file) {
+        return has_variant(file) ? gzip_variant(build, file) : std::string();
+      };
   }
 
   SendSummary send() {
     const std::string variants = options_.gzip ? kGzip : "none";
     // Without their variants files are not there as they should be.
-    if (options_.gzip && state_.note(kPrecompress) != variants) state_.forget();
-    state_.set_note(kPrecompress, variants);
+    if (options_.gzip && state_.note(kVariants) != variants) state_.forget();
+    state_.set_note(kVariants, variants);
     settle_doubts();
     const SendPlan plan = look_ahead(files_, state_, options_, unix_time());
     summary_.unchanged = plan.unchanged;
@@ -54,13 +57,18 @@ class Sender {
  private:
   std::size_t most() const { return static_cast<std::size_t>(std::max(options_.batch, 1)); }
 
+  /// Whether one may be made; builds have some themselves (build --precompress).
+  bool has_variant(const BuildFile& file) const {
+    return options_.gzip && may_shrink(file.path) && !files_.contains(file.path + ".gz");
+  }
+
   /// What a run that was broken off had sent whole is noted as that; where a variant belongs to it, nobody knows which.
   void settle_doubts() {
     if (!target_.has) return;
     const std::set<std::string> doubts = state_.in_doubt();
     for (const std::string& path : doubts)
       if (const auto file = files_.find(path);
-          file != files_.end() && !(options_.gzip && may_shrink(path)) && target_.has(file->second))
+          file != files_.end() && !has_variant(file->second) && target_.has(file->second))
         state_.put(path, file->second.sha256), ++summary_.found;
   }
 
@@ -82,7 +90,7 @@ class Sender {
       const std::string variant = file.path + ".gz";
       const bool was = state_.here().contains(variant) || state_.in_doubt().contains(variant);
       if (was) stale_.insert(variant);
-      if (!options_.gzip || !may_shrink(file.path)) continue;
+      if (!has_variant(file)) continue;
       touched.push_back(variant);
       if (!was) without.insert(variant);
     }

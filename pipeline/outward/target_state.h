@@ -23,7 +23,7 @@ class TargetState {
   const std::map<std::string, std::int64_t>& leaving() const { return leaving_; }
   /// Hash of the build.json that lies there whole with all that it names; empty: none does.
   const std::string& build() const { return build_; }
-  /// Facts of the target beside its files: "precompress" → "gzip".
+  /// Facts of the target beside its files: "variants" → "gzip".
   std::string note(const std::string& key) const;
 
   /// Nothing is known to be there any more: all that was is in doubt.

@@ -97,7 +97,7 @@ class Postgis(RegionTest):
                 for row in there:
                     for name, text, value in zip(columns, row, of_file[row[columns.index('id')]]):
                         if isinstance(value, float):
-                            self.assertEqual(float(text), value, (table, name))
+                            self.assertAlmostEqual(float(text), value, delta=abs(value) * 1e-14, msg=(table, name))  # GDAL writes 15 digits
                         else:
                             self.assertEqual(text, '' if value is None else str(value), (table, name))
                     blob = of_file[row[columns.index('id')]][-1]
@@ -121,7 +121,7 @@ class Postgis(RegionTest):
         count = self.server.sql('areas', 'SELECT count(*), count(DISTINCT id) FROM blockrand.buildings')
         whole = self.build(source, 'whole', '--formats', 'gpkg', '--no-report')
         self.publish(whole, connection)
-        self.assertEqual(self.server.sql('areas', 'SELECT DISTINCT blockrand_area FROM blockrand.buildings'), [['']])
+        self.assertEqual(self.server.sql('areas', 'SELECT count(DISTINCT blockrand_area), max(length(blockrand_area)) FROM blockrand.buildings'), [['1', '0']])
         self.assertEqual(self.server.sql('areas', 'SELECT count(*), count(DISTINCT id) FROM blockrand.buildings'), count)
         self.same_as_fresh(whole, 'areas')
 
@@ -150,7 +150,7 @@ class Postgis(RegionTest):
         self.same_as_fresh(build, 'drift')
         # Another type.
         sql("ALTER TABLE blockrand.buildings ALTER COLUMN storeys TYPE real USING 0; UPDATE blockrand.blockrand_files SET sha256 = 'x'")
-        self.refused(self.publish(build, connection, code=1), 1, 'column storeys', 'DROP TABLE "blockrand"."buildings"')
+        self.refused(self.publish(build, connection, code=1), 1, 'column storeys', 'DROP TABLE')
         sql('DROP TABLE blockrand.buildings')
         self.publish(build, connection)
         self.same_as_fresh(build, 'drift')

@@ -65,9 +65,9 @@ class Outward(RegionTest):
         """Nights with edits, published to a web root while a reader walks it."""
         rng, map_ = random.Random(11), Map(read_xml(SAMPLE))
         grace = 20  # s: many times what a walk takes
-        folder = self.region('web', LIMITS_OFF + TILES + f'textures = "shared"\n[publish]\nto = "../www"\nkeep_deleted = {grace / 3600}\n')
+        folder = self.region('web', LIMITS_OFF + TILES + f'textures = "shared"\n[publish]\nweb_root = "../www"\nkeep_deleted = {grace / 3600}\n')
         run = self.update(folder, map_.write(self.path('web.osm')))
-        self.assertIn('published outward: to', run.out)
+        self.assertIn('published outward: web-root', run.out)
         www = self.path('www')
         self.lies_there(www, self.current(folder))
         with web_server(www) as port:
@@ -168,16 +168,16 @@ class Outward(RegionTest):
 
     def test_a_web_root_is_mended(self):
         build, www = self.build(SAMPLE, 'mended'), self.path('mended_www')
-        self.publish(build, '--to', www)
+        self.publish(build, '--web-root', www)
         os.remove(os.path.join(www, 'tileset.json'))
         with open(os.path.join(www, 'build.json'), 'w', encoding='utf-8') as f:
             f.write('{}')
-        planned = self.publish(build, '--to', www, '--dry-run').out
+        planned = self.publish(build, '--web-root', www, '--dry-run').out
         self.assertIn('0 files to send', planned, 'what others did there is not seen')
-        self.publish(build, '--to', www, '--resend')
+        self.publish(build, '--web-root', www, '--resend')
         self.lies_there(www, build)
         # Another web root: all is sent.
-        self.publish(build, '--to', self.path('other_www'))
+        self.publish(build, '--web-root', self.path('other_www'))
         self.lies_there(self.path('other_www'), build)
 
     def test_areas(self):
@@ -248,7 +248,7 @@ class Outward(RegionTest):
 
     def test_variants(self):
         build, www = self.build(SAMPLE, 'packed'), self.path('packed_www')
-        self.publish(build, '--to', www, '--precompress', 'gzip')
+        self.publish(build, '--web-root', www, '--variants', 'gzip')
         packed = [p for p in files_of(www) if p.endswith('.gz') and p[:-3] in named_by(build)]
         self.assertIn('report.json.gz', packed)
         self.assertNotIn('plan.png.gz', packed)
@@ -258,20 +258,20 @@ class Outward(RegionTest):
             self.assertLessEqual(os.path.getsize(os.path.join(www, path)), 0.9 * os.path.getsize(os.path.join(build, path[:-3])))
         before = hashes(www)
         shutil.rmtree(www)
-        self.publish(build, '--to', www, '--precompress', 'gzip', '--resend')
+        self.publish(build, '--web-root', www, '--variants', 'gzip', '--resend')
         self.assertEqual(hashes(www), before, 'the same bytes each time')
         command, to, log, fail = self.command('packed_by_command')
-        self.publish(build, '--command', command, '--precompress', 'gzip', '--batch', '5')
+        self.publish(build, '--command', command, '--variants', 'gzip', '--batch', '5')
         self.assertEqual(hashes(to), before)
-        self.publish(build, '--to', www)
+        self.publish(build, '--web-root', www)
         self.lies_there(www, build)
 
     def test_what_makes_no_sense_is_refused(self):
         build = self.build(SAMPLE, 'refusing', '--formats', 'gltf', '--no-report')
         self.refused(blockrand('publish', build), 1, 'nowhere to send to')
         self.refused(blockrand('publish', self.path('nothing')), 1, 'no region and no build')
-        self.refused(blockrand('publish', build, '--to', build), 1, 'is a build itself')
-        self.refused(blockrand('publish', build, '--to', self.path('w'), '--target', 'a/b'), 1, 'no name of a target')
+        self.refused(blockrand('publish', build, '--web-root', build), 1, 'is a build itself')
+        self.refused(blockrand('publish', build, '--web-root', self.path('w'), '--target', 'a/b'), 1, 'no name of a target')
         self.refused(blockrand('publish', build, '--postgis', 'PG:dbname=x'), 1, 'has no GeoPackage')
         folder = self.region('secret', LIMITS_OFF + '[publish]\npostgis = "PG:dbname=x password=hush"\n')
         for command in (['publish', folder], ['update', folder, SAMPLE], ['status', folder]):

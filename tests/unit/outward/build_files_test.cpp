@@ -17,6 +17,9 @@ TEST_F(BuildFiles, StepsByName) {
   EXPECT_EQ(step_of("areas/11/1/2/tileset.json"), Step::tilesets);
   EXPECT_EQ(step_of("tilesets/8/1/2.json"), Step::tilesets);
   EXPECT_EQ(step_of("report.html"), Step::documents);
+  EXPECT_EQ(step_of("tileset.json.gz"), Step::tilesets) << "servers hand it out as tileset.json";
+  EXPECT_EQ(step_of("tiles/15/1/2.glb.gz"), Step::tiles);
+  EXPECT_EQ(step_of("explain/15_1_2.jsonl.gz"), Step::contents);
   EXPECT_EQ(step_of("areas/11/1/2/build.json"), Step::record);
 }
 
@@ -34,6 +37,15 @@ TEST_F(BuildFiles, TilesetsStandBehindThoseThatTheyLeadTo) {
   EXPECT_EQ(files.at("tileset.json").level, 2);
   EXPECT_LT(files.at("areas/11/1/2/build.json").level, files.at("build.json").level);
   EXPECT_EQ(files.at("build.json").sha256, base::sha256_file(folder + "/build.json"));
+}
+
+TEST_F(BuildFiles, PackedTilesetsComeWithTheirPlainOnes) {
+  const std::string folder = build("b", {{"tileset.json", tileset({"tilesets/a.json"})},
+                                         {"tileset.json.gz", "packed"},
+                                         {"tilesets/a.json", tileset({})}});
+  const auto files = files_of_build(folder);
+  EXPECT_EQ(files.at("tileset.json.gz").step, Step::tilesets);
+  EXPECT_EQ(files.at("tileset.json.gz").level, 1);
 }
 
 TEST_F(BuildFiles, ATilesetThatLeadsToNoFileOfTheBuildIsRefused) {

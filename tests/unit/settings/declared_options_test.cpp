@@ -53,6 +53,10 @@ TEST(DeclaredOptions, EveryMemberOfValidationIsOne) {
             member_count<blockrand::validate::ValidateOptions>());
 }
 
+TEST(DeclaredOptions, EveryMemberOfPublishingIsOne) {
+  EXPECT_EQ(outward::publish_options().size(), member_count<outward::PublishOptions>());
+}
+
 TEST(DeclaredOptions, PlacesAmongOthersExist) {
   std::map<std::string_view, std::size_t> place;
   for (const Option& o : options()) place.emplace(o.name, place.size());
@@ -67,8 +71,8 @@ TEST(DeclaredOptions, PlacesAmongOthersExist) {
 TEST(DeclaredOptions, TheTableGoesSectionBySection) {
   std::vector<std::string_view> names;
   for (const base::OptionSection& section : sections()) names.push_back(section.name);
-  EXPECT_EQ(names,
-            (std::vector<std::string_view>{"build", "repair", "generate", "region", "gates", "compare", "messages"}));
+  EXPECT_EQ(names, (std::vector<std::string_view>{"build", "repair", "generate", "region", "gates", "publish",
+                                                  "compare", "messages"}));
   for (const base::OptionSection& section : sections())
     EXPECT_EQ(in_config(section), section.name != "compare" && section.name != "messages") << section.name;
 }
