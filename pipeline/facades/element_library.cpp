@@ -9,6 +9,7 @@
 #include <optional>
 #include <variant>
 
+#include "pipeline/model/usual_glass.h"
 #include "styles/grammar/evaluation/colour_text.h"
 
 namespace blockrand::facades {
@@ -23,8 +24,8 @@ constexpr double kSizeSteps = 100, kParameterSteps = 1000;
 constexpr double kOpeningWidthSteps = 20, kOpeningHeightSteps = 10;
 constexpr double kRounding = 0.001;  ///< of a step: what floats may lack of a whole one
 /// Colours of parts that neither rule nor building says.
-constexpr model::Colour kFrame{0xF6, 0xF6, 0xF6}, kGlass{0x51, 0x62, 0x6E}, kLeaf{0x5A, 0x3A, 0x29},
-    kMetal{0x37, 0x3F, 0x43}, kTrim{0xFD, 0xF4, 0xE3}, kSill{0xE9, 0xE5, 0xCE};
+constexpr model::Colour kFrame{0xF6, 0xF6, 0xF6}, kLeaf{0x5A, 0x3A, 0x29}, kMetal{0x37, 0x3F, 0x43},
+    kTrim{0xFD, 0xF4, 0xE3}, kSill{0xE9, 0xE5, 0xCE};
 
 /// "#rrggbb", as rule files write colours.
 std::optional<model::Colour> colour_of_text(std::string_view text) {
@@ -79,7 +80,7 @@ PartMaterials ElementLibrary::usual_materials(const model::BuildingPart& part) c
       break;
     }
   set(ElementPart::frame, wood_, kFrame);
-  set(ElementPart::glass, glass_, kGlass);
+  set(ElementPart::glass, glass_, model::kUsualGlass);
   set(ElementPart::leaf, wood_, kLeaf);
   set(ElementPart::surround, plaster_, kTrim);
   set(ElementPart::sill, plaster_, kSill);

@@ -362,6 +362,10 @@ class Reader {
     std::array<double, 3> mean{1, 1, 1};
     for (std::size_t i = 0; told && i < 3; ++i) mean[i] = (*told)[i];
     for (std::size_t i = 0; factor && i < 3; ++i) one[i] = srgb((*factor)[i] * mean[i]);
+    // Panes show something else than their colour; their material tells it.
+    const auto modelled = numbers(member(member(material, "extras"), "colour"), 3);
+    for (std::size_t i = 0; modelled && i < 3; ++i) one[i] = srgb((*modelled)[i]);
+    if (modelled) colour = nullptr;
     read_triangles({*position, normal, colour, feature, *indices, one, row, mean}, matrix, where, placed);
   }
 

@@ -26,15 +26,20 @@ Point3 area_vector(std::span<const Point3> corners) {
   return n;
 }
 
-/// Calls `visit(part, corners)` for each face of an element.
+/// Calls `visit(part, corners, screen)` for each face of an element.
 template <class Visit>
-void for_each_face(const model::Element& element, bool with_reveal, Visit&& visit) {
+void for_each_face(const model::Element& element, bool with_reveal, Panes panes, Visit&& visit) {
   const model::ElementMesh& mesh = element.mesh;
   std::vector<Point3> corners;
+  const PaneCut cut(panes, element);
   for (const model::ElementFace& face : mesh.faces) {
     corners.clear();
     for (std::uint32_t i = 0; i < face.count; ++i) corners.push_back(mesh.vertices[mesh.indices[face.first + i]]);
-    visit(face.part, std::as_const(corners));
+    if (panes != Panes::as_modelled && face.part == model::ElementPart::glass) {
+      for (const PanePiece& piece : cut.cut(corners)) visit(face.part, piece.corners, piece.screen);
+    } else {
+      visit(face.part, std::as_const(corners), false);
+    }
   }
   const auto& outline = element.opening.outline;
   if (!with_reveal || !(element.opening.reveal > 0)) return;
@@ -42,7 +47,7 @@ void for_each_face(const model::Element& element, bool with_reveal, Visit&& visi
     const model::Point2 a = outline[i], b = outline[(i + 1) % outline.size()];
     const double depth = -element.opening.reveal;
     corners = {{a.x, a.y, 0}, {b.x, b.y, 0}, {b.x, b.y, depth}, {a.x, a.y, depth}};
-    visit(model::ElementPart::wall, std::as_const(corners));
+    visit(model::ElementPart::wall, std::as_const(corners), false);
   }
 }
 
@@ -90,21 +95,27 @@ class PartBuilder {
 
 }  // namespace
 
-ElementGeometry element_geometry(const model::Element& element, bool with_reveal) {
-  std::array<std::size_t, model::kElementPartCount> corner_count{};
-  for_each_face(element, with_reveal, [&](model::ElementPart part, std::span<const Point3> corners) {
-    corner_count[static_cast<std::size_t>(part)] += corners.size();
-  });
+ElementGeometry element_geometry(const model::Element& element, bool with_reveal, Panes panes) {
+  const auto builder_of = [](model::ElementPart part, bool screen) {
+    return 2 * static_cast<std::size_t>(part) + (screen ? 1 : 0);
+  };
+  std::array<std::size_t, std::size_t{2} * model::kElementPartCount> corner_count{};
+  for_each_face(element, with_reveal, panes,
+                [&](model::ElementPart part, std::span<const Point3> corners, bool screen) {
+                  corner_count[builder_of(part, screen)] += corners.size();
+                });
   std::vector<PartBuilder> builders;
   for (const std::size_t n : corner_count) builders.emplace_back(n);
-  for_each_face(element, with_reveal, [&](model::ElementPart part, std::span<const Point3> corners) {
-    builders[static_cast<std::size_t>(part)].add_face(corners);
-  });
+  for_each_face(element, with_reveal, panes,
+                [&](model::ElementPart part, std::span<const Point3> corners, bool screen) {
+                  builders[builder_of(part, screen)].add_face(corners);
+                });
   ElementGeometry out;
   for (std::size_t i = 0; i < builders.size(); ++i)
     for (ElementGeometry::PartTriangles& piece : builders[i].pieces) {
       if (piece.indices.empty()) continue;
-      piece.part = static_cast<model::ElementPart>(i);
+      piece.part = static_cast<model::ElementPart>(i / 2);
+      piece.screen = i % 2 == 1;
       for (const ElementVertex& v : piece.vertices) {
         const Point3& p = v.position;
         const bool first = out.parts.empty() && &v == &piece.vertices.front();
@@ -118,25 +129,31 @@ ElementGeometry element_geometry(const model::Element& element, bool with_reveal
 
 std::optional<std::pair<Point3, Point3>> element_box(const model::Element& element, bool with_reveal) {
   std::optional<std::pair<Point3, Point3>> box;
-  for_each_face(element, with_reveal, [&](model::ElementPart, std::span<const Point3> corners) {
-    const Point3 n = area_vector(corners);
-    if (!(std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) > 0)) return;
-    if (!box) box.emplace(corners[0], corners[0]);
-    auto& [min, max] = *box;
-    for (const Point3& p : corners) {
-      min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
-      max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
-    }
-  });
+  for_each_face(element, with_reveal, Panes::as_modelled,
+                [&](model::ElementPart, std::span<const Point3> corners, bool) {
+                  const Point3 n = area_vector(corners);
+                  if (!(std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) > 0)) return;
+                  if (!box) box.emplace(corners[0], corners[0]);
+                  auto& [min, max] = *box;
+                  for (const Point3& p : corners) {
+                    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
+                    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+                  }
+                });
   return box;
 }
 
-std::vector<InstanceGroup> element_instances(const model::Region& region, const Frame& frame) {
-  std::vector<InstanceGroup> groups(region.elements.size());
-  for (std::uint32_t i = 0; i < groups.size(); ++i) groups[i].element = i;
+std::vector<InstanceGroup> element_instances(const model::Region& region, const Frame& frame, bool glazed) {
+  // Those of one element follow each other.
+  const std::size_t kinds = glazed ? kPanesCount : 1;
+  std::vector<InstanceGroup> groups(region.elements.size() * kinds);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    groups[i].element = static_cast<std::uint32_t>(i / kinds);
+    groups[i].panes = static_cast<Panes>(i % kinds);
+  }
   // Two points each: where the element stands, and a metre to its right, so that directions are those of the frame.
   std::vector<Point3> source;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> element_and_feature;
+  std::vector<std::pair<std::size_t, std::uint32_t>> group_and_feature;
   std::uint32_t feature = 0;
   const std::vector<bool> shown = with_shape(region);
   for (const model::Building& building : region.buildings) {
@@ -147,7 +164,8 @@ std::vector<InstanceGroup> element_instances(const model::Region& region, const 
           if (!shown.at(p.element)) continue;
           source.push_back(p.origin);
           source.push_back({p.origin.x + p.along.x, p.origin.y + p.along.y, p.origin.z});
-          element_and_feature.emplace_back(p.element, feature);
+          const Panes panes = glazed ? panes_of(part, p, region.elements[p.element]) : Panes::as_modelled;
+          group_and_feature.emplace_back(p.element * kinds + static_cast<std::size_t>(panes), feature);
         }
       ++feature;
     }
@@ -157,11 +175,11 @@ std::vector<InstanceGroup> element_instances(const model::Region& region, const 
     frame.to_enu(source, local);
   else
     local = source;
-  for (std::size_t i = 0; i < element_and_feature.size(); ++i) {
+  for (std::size_t i = 0; i < group_and_feature.size(); ++i) {
     const Point3 &origin = local[2 * i], &right = local[2 * i + 1];
     const double east = right.x - origin.x, north = right.y - origin.y, length = std::sqrt(east * east + north * north);
     const model::Point2 along = length > 0 ? model::Point2{east / length, north / length} : model::Point2{1, 0};
-    groups[element_and_feature[i].first].instances.push_back({element_and_feature[i].second, origin, along});
+    groups[group_and_feature[i].first].instances.push_back({group_and_feature[i].second, origin, along});
   }
   std::erase_if(groups, [](const InstanceGroup& g) { return g.instances.empty(); });
   return groups;
@@ -170,7 +188,7 @@ std::vector<InstanceGroup> element_instances(const model::Region& region, const 
 std::vector<PartElement> elements_by_part(const std::vector<InstanceGroup>& groups) {
   std::vector<PartElement> out;
   for (const InstanceGroup& group : groups)
-    for (const ElementInstance& at : group.instances) out.push_back({group.element, &at});
+    for (const ElementInstance& at : group.instances) out.push_back({group.element, group.panes, &at});
   std::stable_sort(out.begin(), out.end(),
                    [](const PartElement& a, const PartElement& b) { return a.at->feature < b.at->feature; });
   return out;

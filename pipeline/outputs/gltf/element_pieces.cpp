@@ -82,12 +82,13 @@ bool is_upright(std::span<const Piece::Vertex> vertices) {
   return std::ranges::all_of(vertices, [](const Piece::Vertex& v) { return along_an_axis(v.normal); });
 }
 
-enum Kind : std::uint8_t { filling, trim, sill, reveal, kinds };
+enum Kind : std::uint8_t { filling, pane, trim, sill, reveal, kinds };
 
-Kind kind_of(ElementPart part, bool opening) {
+Kind kind_of(ElementPart part, bool opening, bool glazed) {
   switch (part) {
-    case ElementPart::frame:
     case ElementPart::glass:
+      return glazed ? pane : filling;
+    case ElementPart::frame:
     case ElementPart::leaf:
     case ElementPart::metal:
     case ElementPart::panel:
@@ -107,8 +108,9 @@ struct KindOfPiece {
   Kind kind = filling;
 };
 
-std::vector<KindOfPiece> pieces_of(const model::ColouredElement& element, const ElementGeometry& geometry,
-                                   PieceStore& store) {
+/// \param materials  null: panes are as modelled, and part of the filling
+std::vector<KindOfPiece> pieces_of(const model::ColouredElement& element, const ElementGeometry& geometry, Panes panes,
+                                   const PaneMaterials* materials, PieceStore& store) {
   const bool opening = !element.element->opening.outline.empty();
   std::vector<KindOfPiece> out;
   std::vector<const ElementGeometry::PartTriangles*> parts;  // of the piece
@@ -128,7 +130,8 @@ std::vector<KindOfPiece> pieces_of(const model::ColouredElement& element, const 
       std::size_t next = 0, next_index = 0;
       for (const auto* part : parts) {
         const std::size_t first = next;
-        const model::PartMaterial& look = element.materials[static_cast<std::size_t>(part->part)];
+        model::PartMaterial look = element.materials[static_cast<std::size_t>(part->part)];
+        if (materials && part->part == ElementPart::glass) look = materials->look(panes, part->screen, look);
         for (const ElementVertex& v : part->vertices)
           vertices[next++] = {about(middle, v.position), clean_normal(v.exact_normal), look};
         for (const std::uint32_t i : part->indices) indices[next_index++] = static_cast<std::uint16_t>(first + i);
@@ -138,7 +141,7 @@ std::vector<KindOfPiece> pieces_of(const model::ColouredElement& element, const 
       vertex_count = 0;
     };
     for (const ElementGeometry::PartTriangles& part : geometry.parts) {
-      if (kind_of(part.part, opening) != kind || part.indices.empty()) continue;
+      if (kind_of(part.part, opening, materials != nullptr) != kind || part.indices.empty()) continue;
       if (vertex_count + part.vertices.size() > ElementGeometry::kMostVertices) end();
       parts.push_back(&part);
       vertex_count += part.vertices.size();
@@ -328,7 +331,8 @@ double saved(const Piece& piece, std::size_t places) {
 
 class Planner {
  public:
-  Planner(const model::Region& region, const std::vector<InstanceGroup>& groups) : groups_(groups) {
+  Planner(const model::Region& region, const std::vector<InstanceGroup>& groups, const PaneMaterials* materials)
+      : groups_(groups) {
     std::vector<std::pair<std::size_t, std::vector<KindOfPiece>>> all;
     std::vector<std::size_t> weight(groups.size(), 0), order;
     // Forms come in several colours: those of one form after each other.
@@ -342,13 +346,14 @@ class Planner {
       std::ranges::stable_sort(by_form, {}, [&](std::size_t g) { return form[g]; });
     }
     all.resize(groups.size());
-    const model::Element* known = nullptr;
+    std::pair<const model::Element*, Panes> known;
     ElementGeometry geometry;
     for (const std::size_t g : by_form) {
       const model::ColouredElement& element = region.elements.at(groups[g].element);
-      if (known != element.element.get()) geometry = element_geometry(*element.element, true);
-      known = element.element.get();
-      all[g] = {g, pieces_of(element, geometry, store_)};
+      const std::pair<const model::Element*, Panes> wanted{element.element.get(), groups[g].panes};
+      if (known != wanted) geometry = element_geometry(*element.element, true, groups[g].panes);
+      known = wanted;
+      all[g] = {g, pieces_of(element, geometry, groups[g].panes, materials, store_)};
       for (const KindOfPiece& p : all[g].second) weight[g] += p.piece.triangles() * groups[g].instances.size();
     }
     for (std::size_t g = 0; g < groups.size(); ++g)
@@ -515,8 +520,9 @@ class Planner {
 
 }  // namespace
 
-PiecePlan plan_pieces(const model::Region& region, const std::vector<InstanceGroup>& groups, std::size_t most) {
-  return Planner(region, groups).plan(most);
+PiecePlan plan_pieces(const model::Region& region, const std::vector<InstanceGroup>& groups, std::size_t most,
+                      const PaneMaterials* materials) {
+  return Planner(region, groups, materials).plan(most);
 }
 
 }  // namespace blockrand::outputs

@@ -105,8 +105,11 @@ struct PiecePlan {
 
 /// Divides elements into pieces and finds equal ones, so that at most `most` shapes are placed and the file is small:
 /// popular pieces are shapes, what is left is divided into connected parts, of which the popular ones (a bar, a board)
-/// are shapes again, and the rest is baked. \param groups  must outlive the plan
-PiecePlan plan_pieces(const model::Region& region, const std::vector<InstanceGroup>& groups, std::size_t most);
+/// are shapes again, and the rest is baked. Panes are pieces of their own where they are not as modelled: they have another
+/// material. \param groups  must outlive the plan
+/// \param materials  of panes; null: they are as modelled
+PiecePlan plan_pieces(const model::Region& region, const std::vector<InstanceGroup>& groups, std::size_t most,
+                      const PaneMaterials* materials = nullptr);
 
 /// A place and direction of a piece in east, north, up.
 struct PieceTurn {

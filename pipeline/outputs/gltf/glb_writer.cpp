@@ -18,6 +18,7 @@
 #include "pipeline/outputs/gltf/material.h"
 #include "pipeline/outputs/gltf/mesh_buffers.h"
 #include "pipeline/outputs/gltf/mesh_writer.h"
+#include "pipeline/outputs/gltf/panes.h"
 #include "pipeline/outputs/gltf/piece_writer.h"
 #include "pipeline/outputs/gltf/property_table.h"
 #include "pipeline/outputs/gltf/surface_textures.h"
@@ -86,20 +87,22 @@ void write_batch(GlbDocument& document, const model::Region& region, const GlbOp
                  Glb& glb) {
   const bool bake = options.instancing == Instancing::baked;
   std::vector<InstanceGroup> groups;
-  if (options.lod >= 3 && !bake) groups = element_instances(region, options.frame);
+  const std::optional<PaneMaterials> panes = options.textures ? std::optional<PaneMaterials>(region) : std::nullopt;
+  const PaneMaterials* const glazed = panes ? &*panes : nullptr;
+  if (options.lod >= 3 && !bake) groups = element_instances(region, options.frame, glazed != nullptr);
   PiecePlan plan;
-  if (options.instancing == Instancing::ext) plan = plan_pieces(region, groups, kMostShapes);
+  if (options.instancing == Instancing::ext) plan = plan_pieces(region, groups, kMostShapes, glazed);
   const MaterialTable materials(region.materials);
   int material = -1;
   const bool has_mesh = [&] {  // the mesh is gone before pieces are written: of a dense tile it takes 100 MB
-    Mesh mesh = build_mesh(region, options.lod, options.frame, bake, plan.baked);
+    Mesh mesh = build_mesh(region, options.lod, options.frame, bake, plan.baked, glazed);
     plan.baked = {};
     if (!mesh.empty() || !plan.placed.empty())
       material = document.add_material(materials.material_json(document.add_texture(materials.png())));
     if (mesh.empty()) return false;
     add_box(glb, true, mesh.min, mesh.max);
     Texturing texturing(region, options);
-    glb.triangles = write_mesh(document, mesh, rows, kBuildingClass, material, materials, texturing.textures());
+    glb.triangles = write_mesh(document, mesh, rows, kBuildingClass, material, materials, texturing.textures(), glazed);
     texturing.note(glb);
     document.use("EXT_mesh_features", false);
     document.use("KHR_mesh_quantization", true);
@@ -107,9 +110,9 @@ void write_batch(GlbDocument& document, const model::Region& region, const GlbOp
   }();
   InstanceFigures instances;
   if (options.instancing == Instancing::ext)
-    instances = write_pieces(document, region, groups, plan, material, materials, rows);
+    instances = write_pieces(document, region, groups, plan, material, materials, rows, glazed);
   else if (!groups.empty())
-    instances = write_instances(document, region, groups);
+    instances = write_instances(document, region, groups, glazed);
   if (instances.places > 0) add_box(glb, !has_mesh, instances.min, instances.max);
   glb.triangles += instances.triangles;
   glb.placements = instances.places;
@@ -130,8 +133,10 @@ Glb write_glb(const model::Region& region, const GlbOptions& options) {
   if (table.rows() > 0) {
     if (options.objects == Objects::building) {
       Texturing texturing(region, options);
-      const ObjectFigures objects =
-          write_objects(document, region, options.lod, options.frame, options.instancing, texturing.textures());
+      std::optional<PaneMaterials> panes;
+      if (options.textures) panes.emplace(region);
+      const ObjectFigures objects = write_objects(document, region, options.lod, options.frame, options.instancing,
+                                                  texturing.textures(), panes ? &*panes : nullptr);
       texturing.note(glb);
       glb.buildings = objects.buildings;
       glb.parts = objects.parts;

@@ -27,19 +27,20 @@ struct Place {
 /// All places of one mesh: of stored geometry in certain colours.
 struct PlacedMesh {
   const model::ColouredElement* element = nullptr;  ///< the first of those that share it
+  Panes panes = Panes::as_modelled;
   int stored = 0;
   std::vector<Place> places;
 };
 
 class InstanceWriter {
  public:
-  InstanceWriter(GlbDocument& document, const model::Region& region)
-      : document_(document), region_(region), elements_(document, ElementVertices::steps) {}
+  InstanceWriter(GlbDocument& document, const model::Region& region, const PaneMaterials* panes)
+      : document_(document), region_(region), elements_(document, ElementVertices::steps, region, panes) {}
 
   InstanceFigures write(const std::vector<InstanceGroup>& groups) {
     for (const InstanceGroup& group : groups) collect(group);
     for (const PlacedMesh& placed : meshes_) {
-      const int mesh = elements_.add_mesh(placed.stored, *placed.element, region_, MaterialName::plain);
+      const int mesh = elements_.add_mesh(placed.stored, *placed.element, placed.panes, MaterialName::plain);
       auto& children = children_[elements_[placed.stored].steps];
       for (const Place& place : placed.places) children.push_back(add_node(mesh, place, placed));
     }
@@ -52,11 +53,12 @@ class InstanceWriter {
   /// Finds the mesh that the places of a group belong to.
   void collect(const InstanceGroup& group) {
     const model::ColouredElement& element = region_.elements.at(group.element);
-    const ElementForm form = elements_.form(*element.element);
+    const ElementForm form = elements_.form(*element.element, group.panes);
     if (form.stored < 0) return;
     const StoredElement& stored = elements_[form.stored];
-    const auto [place, added] = known_.try_emplace(elements_.mesh_key(form.stored, element), meshes_.size());
-    if (added) meshes_.push_back({&element, form.stored, {}});
+    const auto [place, added] =
+        known_.try_emplace(elements_.mesh_key(form.stored, element, group.panes), meshes_.size());
+    if (added) meshes_.push_back({&element, group.panes, form.stored, {}});
     PlacedMesh& mesh = meshes_[place->second];
     for (const ElementInstance& at : group.instances) {
       mesh.places.push_back({&at, form.stretch});
@@ -139,8 +141,8 @@ void widen(InstanceFigures& figures, const ElementInstance& at, const model::Poi
 }
 
 InstanceFigures write_instances(GlbDocument& document, const model::Region& region,
-                                const std::vector<InstanceGroup>& groups) {
-  return InstanceWriter(document, region).write(groups);
+                                const std::vector<InstanceGroup>& groups, const PaneMaterials* panes) {
+  return InstanceWriter(document, region, panes).write(groups);
 }
 
 }  // namespace blockrand::outputs

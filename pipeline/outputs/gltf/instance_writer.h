@@ -41,7 +41,8 @@ void widen(InstanceFigures& figures, const ElementInstance& at, const model::Poi
 ///
 /// Equal geometry in other colours shares its accessors. Elements that are a profile drawn along the wall (all corners
 /// at one of two ends) are stored once for every length: places have a scale along x.
+/// \param panes  where groups have other panes than as modelled; may be null otherwise
 InstanceFigures write_instances(GlbDocument& document, const model::Region& region,
-                                const std::vector<InstanceGroup>& groups);
+                                const std::vector<InstanceGroup>& groups, const PaneMaterials* panes = nullptr);
 
 }  // namespace blockrand::outputs

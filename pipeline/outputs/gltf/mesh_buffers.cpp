@@ -186,13 +186,14 @@ void unify_equal_points(const std::vector<model::Point3>& points, std::uint32_t 
 
 /// Puts the triangles of an element that stands at `at` into the mesh.
 void bake_element(const model::ColouredElement& element, const ElementGeometry& geometry, const ElementInstance& at,
-                  Mesh& mesh, Primitives& primitives) {
+                  Panes panes, const PaneMaterials* materials, Mesh& mesh, Primitives& primitives) {
   const model::Point2 out{at.along.y, -at.along.x};
   const auto turn = [&](double x, double y, double z) {
     return model::Point3{at.along.x * x + out.x * z, at.along.y * x + out.y * z, y};
   };
   for (const ElementGeometry::PartTriangles& part : geometry.parts) {
-    const model::PartMaterial& look = element.materials[static_cast<std::size_t>(part.part)];
+    model::PartMaterial look = element.materials[static_cast<std::size_t>(part.part)];
+    if (materials && part.part == model::ElementPart::glass) look = materials->look(panes, part.screen, look);
     MeshPrimitive& primitive = primitives.with_room(look, part.vertices.size());
     const std::size_t first = primitive.vertices.size();
     for (const ElementVertex& v : part.vertices) {
@@ -341,8 +342,8 @@ void set_box(Mesh& mesh) {
 
 }  // namespace
 
-Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake,
-                std::span<const BakedPiece> pieces) {
+Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake, std::span<const BakedPiece> pieces,
+                const PaneMaterials* panes) {
   Bodies bodies = collect_bodies(region, lod, frame, bake);
   Mesh mesh;
   mesh.positions = std::move(bodies.local);
@@ -354,10 +355,11 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool b
   }
   bodies = {};
   if (bake && lod >= 3)
-    for (const InstanceGroup& group : element_instances(region, frame)) {
+    for (const InstanceGroup& group : element_instances(region, frame, panes != nullptr)) {
       const model::ColouredElement& element = region.elements[group.element];
-      const ElementGeometry geometry = element_geometry(*element.element, false);
-      for (const ElementInstance& at : group.instances) bake_element(element, geometry, at, mesh, primitives);
+      const ElementGeometry geometry = element_geometry(*element.element, false, group.panes);
+      for (const ElementInstance& at : group.instances)
+        bake_element(element, geometry, at, group.panes, panes, mesh, primitives);
     }
   std::size_t points = mesh.positions.size();
   for (const BakedPiece& piece : pieces) points += piece.places->size() * piece.piece.vertices.size();
@@ -371,10 +373,11 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool b
 }
 
 void for_each_part_mesh(const model::Region& region, int lod, const Frame& frame, bool bake,
-                        const std::function<void(std::uint32_t feature, Mesh mesh)>& visit) {
+                        const std::function<void(std::uint32_t feature, Mesh mesh)>& visit,
+                        const PaneMaterials* panes) {
   const Bodies bodies = collect_bodies(region, lod, frame, bake);
   std::vector<InstanceGroup> groups;
-  if (bake && lod >= 3) groups = element_instances(region, frame);
+  if (bake && lod >= 3) groups = element_instances(region, frame, panes != nullptr);
   const std::vector<PartElement> elements = elements_by_part(groups);
   SolidWriter writer(bodies.source);
   auto ref = bodies.solids.begin();
@@ -391,12 +394,13 @@ void for_each_part_mesh(const model::Region& region, int lod, const Frame& frame
       for (; ref != end; ++ref) writer.add(*ref, first, mesh, primitives);
     }
     ElementGeometry geometry;
-    for (std::uint32_t known = model::kNoIndex; element != elements.end() && element->at->feature == feature;
-         ++element) {
+    for (std::pair known(model::kNoIndex, Panes::as_modelled);
+         element != elements.end() && element->at->feature == feature; ++element) {
       const model::ColouredElement& coloured = region.elements[element->element];
-      if (known != element->element) geometry = element_geometry(*coloured.element, false);
-      known = element->element;
-      bake_element(coloured, geometry, *element->at, mesh, primitives);
+      const std::pair wanted(element->element, element->panes);
+      if (known != wanted) geometry = element_geometry(*coloured.element, false, element->panes);
+      known = wanted;
+      bake_element(coloured, geometry, *element->at, element->panes, panes, mesh, primitives);
     }
     mesh.primitives = primitives.take();
     set_box(mesh);

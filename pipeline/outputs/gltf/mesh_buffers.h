@@ -31,6 +31,7 @@ struct MeshPrimitive {
   std::vector<MeshVertex> vertices;    ///< at most kMostVertices
   std::vector<std::uint16_t> indices;  ///< counter-clockwise triangles seen from outside
 
+  bool glass = false;                                ///< of a pane or a sheet of glass, `look` tells which material
   int texture = -1;                                  ///< of SurfaceTextures; -1: none
   float reach = 1;                                   ///< repeats that a stored texture coordinate of 1 stands for
   std::vector<std::array<float, 2>> repeats;         ///< parallel to vertices where there is a texture: right, down
@@ -61,13 +62,14 @@ std::vector<bool> hidden_faces(const model::Region& region, const model::Detail&
 /// Shading is flat: a face's vertices share the normal of its plane (Newell's method in the local frame). Corners of a
 /// part with equal position, normal, colour and material become one vertex. Faces are in the order of the parts.
 /// Primitives are as few as there can be: vertices have their looks. \param pieces  of elements that are not placed;
-/// they are kept apart
+/// they are kept apart \param panes  of elements that are baked; null: as modelled
 Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake = false,
-                std::span<const BakedPiece> pieces = {});
+                std::span<const BakedPiece> pieces = {}, const PaneMaterials* panes = nullptr);
 
 /// The same, part by part: `visit` gets every part's row of the table and its mesh, which is empty where the part shows
 /// nothing. Primitives have one look each, by ascending material and colour.
 void for_each_part_mesh(const model::Region& region, int lod, const Frame& frame, bool bake,
-                        const std::function<void(std::uint32_t feature, Mesh mesh)>& visit);
+                        const std::function<void(std::uint32_t feature, Mesh mesh)>& visit,
+                        const PaneMaterials* panes = nullptr);
 
 }  // namespace blockrand::outputs

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,8 +28,14 @@ constexpr double kColumn = kTileStepsPerMetre / 100;
 class MeshWriter {
  public:
   /// Takes primitives out of `mesh` as it writes them.
-  MeshWriter(GlbDocument& document, Mesh& mesh, std::size_t features, std::string_view label, SurfaceTextures* textures)
-      : document_(document), mesh_(mesh), label_(label), textures_(textures), wide_features_(features > 0xFFFF) {
+  MeshWriter(GlbDocument& document, Mesh& mesh, std::size_t features, std::string_view label, SurfaceTextures* textures,
+             const PaneMaterials* panes)
+      : document_(document),
+        mesh_(mesh),
+        label_(label),
+        textures_(textures),
+        panes_(panes),
+        wide_features_(features > 0xFFFF) {
     far_ = std::max({std::fabs(mesh.min.x), std::fabs(mesh.min.y), std::fabs(mesh.min.z), std::fabs(mesh.max.x),
                      std::fabs(mesh.max.y), std::fabs(mesh.max.z)}) > kFinestReach;
   }
@@ -41,9 +49,15 @@ class MeshWriter {
     for (const Stream stream : {Stream::colours, Stream::normals, far_ ? Stream::far_positions : Stream::tile_positions,
                                 Stream::texture_places, wide_features_ ? Stream::wide_features : Stream::features})
       document_.expect(stream, vertices);
+    if (panes_)
+      for (auto* list : {&mesh_.primitives, &mesh_.pieces}) take_glass_out(*list);
     if (textures_) {
       std::vector<MeshPrimitive> parts;
       for (MeshPrimitive& all : mesh_.primitives) {
+        if (is_glass(all)) {
+          parts.push_back(std::move(all));
+          continue;
+        }
         for (MeshPrimitive& part : textures_->split(all, mesh_)) add_to(parts, std::move(part));
         all = {};
       }
@@ -73,12 +87,15 @@ class MeshWriter {
       attribute(json, "NORMAL", add_normals(p));
       attribute(json, "POSITION", add_positions(p, round));
       if (textured) attribute(json, "TANGENT", add_tangents(p));
-      attribute(json, "TEXCOORD_0", textured ? add_repeats(p) : add_classes(p, table));
+      if (!is_glass(p)) attribute(json, "TEXCOORD_0", textured ? add_repeats(p) : add_classes(p, table));
       attribute(json, "_FEATURE_ID_0", add_features(p));
       json += "},\"extensions\":{\"EXT_mesh_features\":" + feature_ids(p) + "},\"indices\":";
       append_number(json, std::int64_t{add_indices(p)});
       json += ",\"material\":";
-      append_number(json, std::int64_t{textured ? textures_->material(document_, p) : material});
+      append_number(json, std::int64_t{is_glass(p) ? document_.add_material(panes_->glass_json(
+                                                         p.look.material, std::nullopt, MaterialName::plain))
+                                       : textured  ? textures_->material(document_, p)
+                                                   : material});
       json += '}';
     }
     if (triangles == 0) return 0;
@@ -93,11 +110,58 @@ class MeshWriter {
     return triangles;
   }
 
+  /// Of primitives of one material, which those of glass are.
+  bool is_glass(const MeshPrimitive& p) const { return p.glass; }
+
+  /// Makes primitives of each kind of glass, behind all that is none.
+  void take_glass_out(std::vector<MeshPrimitive>& primitives) const {
+    std::map<std::uint8_t, std::vector<MeshPrimitive>> glass;  // by material
+    for (MeshPrimitive& all : primitives) {
+      if (std::ranges::none_of(all.vertices, [&](const MeshVertex& v) { return panes_->is_glass(v.look.material); }))
+        continue;
+      MeshPrimitive rest;
+      rest.look = all.look;
+      constexpr std::uint32_t kNone = ~0u;
+      std::vector<std::uint32_t> number(all.vertices.size(), kNone);
+      std::map<std::uint8_t, std::size_t> into;  // the how-manieth of its list `number` counts vertices of
+      for (std::size_t t = 0; t + 2 < all.indices.size(); t += 3) {
+        const std::uint8_t material = all.vertices[all.indices[t]].look.material;
+        MeshPrimitive* to = &rest;
+        if (panes_->is_glass(material)) {
+          auto& list = glass[material];
+          if (list.empty() || list.back().vertices.size() + 3 > MeshPrimitive::kMostVertices) {
+            list.emplace_back().look.material = material;
+            list.back().glass = true;
+          }
+          to = &list.back();
+          // A vertex of the primitive before, which is full, is written again.
+          if (const auto [last, added] = into.try_emplace(material, list.size());
+              !added && last->second != list.size()) {
+            for (std::size_t v = 0; v < number.size(); ++v)
+              if (all.vertices[v].look.material == material) number[v] = kNone;
+            last->second = list.size();
+          }
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::uint16_t v = all.indices[t + k];
+          if (number[v] == kNone) {
+            number[v] = static_cast<std::uint32_t>(to->vertices.size());
+            to->vertices.push_back(all.vertices[v]);
+          }
+          to->indices.push_back(static_cast<std::uint16_t>(number[v]));
+        }
+      }
+      all = std::move(rest);
+    }
+    std::erase_if(primitives, [](const MeshPrimitive& p) { return p.indices.empty(); });
+    for (auto& [material, list] : glass) std::ranges::move(list, std::back_inserter(primitives));
+  }
+
   /// Puts a primitive behind the last one of its texture that has room for it.
   static void add_to(std::vector<MeshPrimitive>& parts, MeshPrimitive&& part) {
     if (part.indices.empty()) return;
     const auto same = std::find_if(parts.rbegin(), parts.rend(), [&](const MeshPrimitive& other) {
-      return other.texture == part.texture && other.reach == part.reach &&
+      return !other.glass && other.texture == part.texture && other.reach == part.reach &&
              (part.texture < 0 || other.look.material == part.look.material);
     });
     if (same == parts.rend() || same->vertices.size() + part.vertices.size() > MeshPrimitive::kMostVertices) {
@@ -164,7 +228,7 @@ class MeshWriter {
       corners.push_back({{whole(enu.x), whole(enu.y), whole(enu.z)}, v.normal});
     }
     MeshPrimitive out;
-    out.look = p.look, out.texture = p.texture, out.reach = p.reach;
+    out.look = p.look, out.texture = p.texture, out.reach = p.reach, out.glass = p.glass;
     for (std::size_t t = 0; t + 2 < p.indices.size(); t += 3) {
       // Pieces of elements do not have to close; a solid would be open without it, and keeps floats.
       if (!far_ && order == Order::vertex_cache && is_flat(corners, p.indices, t)) continue;
@@ -313,15 +377,16 @@ class MeshWriter {
   GlbDocument& document_;
   Mesh& mesh_;
   std::string_view label_;
-  SurfaceTextures* textures_;  ///< null: none
+  SurfaceTextures* textures_;   ///< null: none
+  const PaneMaterials* panes_;  ///< null: glass is as all else
   bool wide_features_, far_ = false;
 };
 
 }  // namespace
 
 std::size_t write_mesh(GlbDocument& document, Mesh& mesh, std::size_t features, std::string_view label, int material,
-                       const MaterialTable& table, SurfaceTextures* textures) {
-  return MeshWriter(document, mesh, features, label, textures).write(material, table);
+                       const MaterialTable& table, SurfaceTextures* textures, const PaneMaterials* panes) {
+  return MeshWriter(document, mesh, features, label, textures, panes).write(material, table);
 }
 
 }  // namespace blockrand::outputs

@@ -58,38 +58,48 @@ struct OpenPart {
 
 class ObjectWriter {
  public:
-  ObjectWriter(GlbDocument& document, const model::Region& region, SurfaceTextures* textures)
+  ObjectWriter(GlbDocument& document, const model::Region& region, SurfaceTextures* textures,
+               const PaneMaterials* panes)
       : document_(document),
         region_(region),
         tags_(region.extract),
-        stored_(document, ElementVertices::floats),
-        textures_(textures) {}
+        stored_(document, ElementVertices::floats, region, panes),
+        textures_(textures),
+        panes_(panes) {}
 
   ObjectFigures write(int lod, const Frame& frame, Instancing how) {
     const bool nodes = how == Instancing::nodes && lod >= 3;
     std::vector<InstanceGroup> groups;
-    if (nodes) groups = element_instances(region_, frame);
+    if (nodes) groups = element_instances(region_, frame, panes_ != nullptr);
     const std::vector<PartElement> elements = elements_by_part(groups);
     std::vector<std::pair<const model::Building*, const model::BuildingPart*>> rows;
     for (const model::Building& building : region_.buildings)
       if (building.owned)
         for (const model::BuildingPart& part : building.parts) rows.emplace_back(&building, &part);
     std::size_t next = 0;
-    for_each_part_mesh(region_, lod, frame, !nodes, [&](std::uint32_t feature, Mesh mesh) {
-      const auto& [building, part] = rows.at(feature);
-      if (textures_) {
-        std::vector<MeshPrimitive> parts;
-        for (const MeshPrimitive& all : mesh.primitives)
-          for (MeshPrimitive& faces : textures_->split(all, mesh))
-            if (!faces.indices.empty()) parts.push_back(std::move(faces));
-        mesh.primitives = std::move(parts);
-      }
-      const std::size_t first = next;
-      while (next < elements.size() && elements[next].at->feature == feature) ++next;
-      if (!mesh.empty() || next > first)
-        open_.push_back({part, feature, std::move(mesh), std::span(elements).subspan(first, next - first)});
-      if (feature + 1 == rows.size() || rows[feature + 1].first != building) close(*building);
-    });
+    for_each_part_mesh(
+        region_, lod, frame, !nodes,
+        [&](std::uint32_t feature, Mesh mesh) {
+          const auto& [building, part] = rows.at(feature);
+          if (textures_) {
+            std::vector<MeshPrimitive> parts;
+            for (MeshPrimitive& all : mesh.primitives) {
+              if (is_glass(all)) {  // of one look
+                parts.push_back(std::move(all));
+                continue;
+              }
+              for (MeshPrimitive& faces : textures_->split(all, mesh))
+                if (!faces.indices.empty()) parts.push_back(std::move(faces));
+            }
+            mesh.primitives = std::move(parts);
+          }
+          const std::size_t first = next;
+          while (next < elements.size() && elements[next].at->feature == feature) ++next;
+          if (!mesh.empty() || next > first)
+            open_.push_back({part, feature, std::move(mesh), std::span(elements).subspan(first, next - first)});
+          if (feature + 1 == rows.size() || rows[feature + 1].first != building) close(*building);
+        },
+        panes_);
     figures_.elements = meshes_.size();
     return figures_;
   }
@@ -211,7 +221,10 @@ class ObjectWriter {
     return document_.add_mesh(json + ",\"primitives\":[" + primitives + "]}");
   }
 
+  bool is_glass(const MeshPrimitive& p) const { return panes_ && panes_->is_glass(p.look.material); }
+
   int material_of(const MeshPrimitive& p) {
+    if (is_glass(p)) return document_.add_material(panes_->json(p.look, MaterialName::with_colour));
     if (p.texture >= 0) return textures_->material(document_, p, p.look.colour);
     return document_.add_material(
         material_json(region_.materials.at(p.look.material), p.look.colour, MaterialName::with_colour));
@@ -266,10 +279,10 @@ class ObjectWriter {
 
   void add_element(const PartElement& place, const Point3& origin, std::vector<int>& children) {
     const model::ColouredElement& element = region_.elements.at(place.element);
-    const ElementForm form = stored_.form(*element.element);
+    const ElementForm form = stored_.form(*element.element, place.panes);
     if (form.stored < 0) return;
-    const auto [mesh, added] = meshes_.try_emplace(stored_.mesh_key(form.stored, element), -1);
-    if (added) mesh->second = stored_.add_mesh(form.stored, element, region_, MaterialName::with_colour);
+    const auto [mesh, added] = meshes_.try_emplace(stored_.mesh_key(form.stored, element, place.panes), -1);
+    if (added) mesh->second = stored_.add_mesh(form.stored, element, place.panes, MaterialName::with_colour);
     const StoredElement& stored = stored_[form.stored];
     std::string json = "{\"extras\":{\"feature\":";
     append_number(json, std::int64_t{place.at->feature});
@@ -291,6 +304,7 @@ class ObjectWriter {
   TagReader tags_;
   StoredElements stored_;
   SurfaceTextures* textures_;               ///< null: none
+  const PaneMaterials* panes_;              ///< null: glass is as modelled
   std::map<std::vector<int>, int> meshes_;  ///< of elements, by StoredElements::mesh_key
   std::vector<OpenPart> open_;              ///< of the building that comes in
   ObjectFigures figures_;
@@ -300,8 +314,8 @@ class ObjectWriter {
 }  // namespace
 
 ObjectFigures write_objects(GlbDocument& document, const model::Region& region, int lod, const Frame& frame,
-                            Instancing elements, SurfaceTextures* textures) {
-  return ObjectWriter(document, region, textures).write(lod, frame, elements);
+                            Instancing elements, SurfaceTextures* textures, const PaneMaterials* panes) {
+  return ObjectWriter(document, region, textures, panes).write(lod, frame, elements);
 }
 
 }  // namespace blockrand::outputs

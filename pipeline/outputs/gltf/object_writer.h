@@ -42,7 +42,9 @@ struct ObjectFigures {
 ///                  `extras`; otherwise they are triangles of the parts' meshes
 /// \param textures  lays them on faces: texture coordinates are floats then, and the base colour factor is divided by the texture's
 ///                  mean; null: all is plain
+/// \param panes     of glass; null: it is as modelled
 ObjectFigures write_objects(GlbDocument& document, const model::Region& region, int lod, const Frame& frame,
-                            Instancing elements, SurfaceTextures* textures = nullptr);
+                            Instancing elements, SurfaceTextures* textures = nullptr,
+                            const PaneMaterials* panes = nullptr);
 
 }  // namespace blockrand::outputs

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -30,6 +31,7 @@ std::array<double, 3> values(const Point3& p) { return {p.x, p.y, p.z}; }
 
 /// Vertices of shapes that share their accessors.
 struct Block {
+  bool glass = false;  ///< no classes are looked up
   std::vector<std::int16_t> positions;
   std::vector<std::int8_t> normals;
   std::vector<std::uint16_t> colours, classes;
@@ -38,8 +40,9 @@ struct Block {
 
 class PieceWriter {
  public:
-  PieceWriter(GlbDocument& document, int material, const MaterialTable& materials, std::size_t rows)
-      : document_(document), material_(material), materials_(materials), wide_features_(rows > 0xFFFF) {}
+  PieceWriter(GlbDocument& document, int material, const MaterialTable& materials, std::size_t rows,
+              const PaneMaterials* panes)
+      : document_(document), material_(material), materials_(materials), panes_(panes), wide_features_(rows > 0xFFFF) {}
 
   void write(const PiecePlan& plan) {
     if (plan.placed.empty()) return;
@@ -53,14 +56,15 @@ class PieceWriter {
     std::vector<Shown> shown;
     // Upright shapes share a block; of the others those with the same steps a metre, whose largest extents are within a factor of
     // two: readers that take an accessor's bounds for one shape's see it as large as the largest of them.
-    std::map<double, std::size_t> open_block;  // by steps a metre; 0: upright ones
+    std::map<std::pair<bool, double>, std::size_t> open_block;  // of glass or not, by steps a metre; 0: upright ones
     for (const PlacedPiece& piece : plan.placed) {
       const Piece& shape = piece.shape;
       const Point3 units = units_of(shape);
-      const auto [place, added] = open_block.try_emplace(shape.upright ? 0 : units.x, blocks.size());
+      const bool glass = is_glass(shape);
+      const auto [place, added] = open_block.try_emplace({glass, shape.upright ? 0 : units.x}, blocks.size());
       if (added || blocks[place->second].count + shape.vertices.size() > ElementGeometry::kMostVertices) {
         place->second = blocks.size();
-        blocks.emplace_back();
+        blocks.emplace_back().glass = glass;
       }
       const std::size_t block = place->second;
       const std::size_t first = add_shape(shape, units, blocks[block]);
@@ -85,6 +89,9 @@ class PieceWriter {
   }
 
  private:
+  /// Pieces of panes have one material.
+  bool is_glass(const Piece& shape) const { return panes_ && panes_->is_glass(shape.vertices[0].look.material); }
+
   static Point3 units_of(const Piece& shape) {
     const Point3& h = shape.half;
     if (shape.upright) {
@@ -110,6 +117,7 @@ class PieceWriter {
       const model::Colour& c = v.look.colour;
       block.colours.insert(block.colours.end(),
                            {kLinearLight[c.r], kLinearLight[c.g], kLinearLight[c.b], std::uint16_t{65535}});
+      if (block.glass) continue;
       const std::array<std::uint16_t, 2> place = materials_.place(v.look.material);
       block.classes.insert(block.classes.end(), place.begin(), place.end());
     }
@@ -144,7 +152,7 @@ class PieceWriter {
     add("COLOR_0", Stream::colours, block.colours, Component::uint16, "VEC4", true);
     add("NORMAL", Stream::normals, block.normals, Component::int8, "VEC3", true);
     add("POSITION", Stream::element_positions, block.positions, Component::int16, "VEC3", false);
-    add("TEXCOORD_0", Stream::texture_places, block.classes, Component::uint16, "VEC2", true);
+    if (!block.glass) add("TEXCOORD_0", Stream::texture_places, block.classes, Component::uint16, "VEC2", true);
     return json;
   }
 
@@ -157,7 +165,10 @@ class PieceWriter {
     std::string mesh = "{\"primitives\":[{\"attributes\":{" + attributes + "},\"indices\":";
     append_number(mesh, std::int64_t{indices});
     mesh += ",\"material\":";
-    append_number(mesh, std::int64_t{material_});
+    const std::uint8_t look = piece.shape.vertices[0].look.material;
+    append_number(mesh, std::int64_t{is_glass(piece.shape) ? document_.add_material(panes_->glass_json(
+                                                                 look, std::nullopt, MaterialName::plain))
+                                                           : material_});
     const int number = document_.add_mesh(mesh + "}]}");
 
     const std::size_t n = piece.places.size();
@@ -220,6 +231,7 @@ class PieceWriter {
   GlbDocument& document_;
   int material_;
   const MaterialTable& materials_;
+  const PaneMaterials* panes_;
   bool wide_features_;
 };
 
@@ -227,8 +239,8 @@ class PieceWriter {
 
 InstanceFigures write_pieces(GlbDocument& document, const model::Region& region,
                              const std::vector<InstanceGroup>& groups, const PiecePlan& plan, int material,
-                             const MaterialTable& materials, std::size_t rows) {
-  PieceWriter(document, material, materials, rows).write(plan);
+                             const MaterialTable& materials, std::size_t rows, const PaneMaterials* panes) {
+  PieceWriter(document, material, materials, rows, panes).write(plan);
   InstanceFigures out;
   out.elements = plan.placed.size();
   for (const PlacedPiece& piece : plan.placed) out.triangles += piece.shape.triangles() * piece.places.size();

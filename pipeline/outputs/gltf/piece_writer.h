@@ -18,8 +18,9 @@ class GlbDocument;
 /// Shapes whose faces lie along the axes fill one cube, whatever their size, and share the accessors of their vertices;
 /// the others have their own. \param groups  of which the plan is: their boxes give the figures
 /// \param rows  of the property table 0, which features are rows of
+/// \param panes  with which the plan was made; null: panes are part of fillings
 InstanceFigures write_pieces(GlbDocument& document, const model::Region& region,
                              const std::vector<InstanceGroup>& groups, const PiecePlan& plan, int material,
-                             const MaterialTable& materials, std::size_t rows);
+                             const MaterialTable& materials, std::size_t rows, const PaneMaterials* panes = nullptr);
 
 }  // namespace blockrand::outputs

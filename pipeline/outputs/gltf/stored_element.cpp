@@ -65,11 +65,11 @@ void drop_flat(std::vector<std::uint32_t>& indices, const std::vector<Vertex>& v
 
 }  // namespace
 
-ElementForm StoredElements::form(const model::Element& element) {
-  const auto [place, added] = forms_.try_emplace(&element);
+ElementForm StoredElements::form(const model::Element& element, Panes panes) {
+  const auto [place, added] = forms_.try_emplace({&element, panes});
   ElementForm& form = place->second;
   if (!added) return form;
-  ElementGeometry geometry = element_geometry(element, true);
+  ElementGeometry geometry = element_geometry(element, true, panes);
   if (geometry.parts.empty()) return form;
   form.min = geometry.min;
   form.max = geometry.max;
@@ -106,7 +106,8 @@ int StoredElements::store(ElementGeometry geometry, double steps, bool stretched
       }
     }
     drop_flat(part.indices, list);
-    const std::size_t sizes[] = {static_cast<std::size_t>(part.part), list.size(), part.indices.size()};
+    const std::size_t sizes[] = {2 * static_cast<std::size_t>(part.part) + part.screen, list.size(),
+                                 part.indices.size()};
     append(key, sizes, sizeof(sizes));
     append(key, list.data(), list.size() * sizeof(list[0]));
     append(key, part.indices.data(), part.indices.size() * sizeof(part.indices[0]));
@@ -137,7 +138,8 @@ int StoredElements::store(ElementGeometry geometry, double steps, bool stretched
       for (const std::uint32_t i : geometry.parts[last].indices)
         indices.push_back(static_cast<std::uint16_t>(count + i));
       const std::size_t at = document_.append<std::uint16_t>(Stream::indices, indices);
-      out.parts.push_back({geometry.parts[last].part, static_cast<int>(out.blocks.size()), at, indices.size()});
+      out.parts.push_back({geometry.parts[last].part, geometry.parts[last].screen, static_cast<int>(out.blocks.size()),
+                           at, indices.size()});
       out.triangles += indices.size() / 3;
       for (const Vertex& v : vertices[last]) {
         for (std::size_t i = 0; i < 3; ++i) {
@@ -190,21 +192,24 @@ StoredElement::Block StoredElements::store_block(const std::vector<float>& posit
   return {position, normal};
 }
 
-std::vector<int> StoredElements::mesh_key(int stored, const model::ColouredElement& element) const {
+model::PartMaterial StoredElements::look(const StoredElement::Part& part, const model::ColouredElement& element,
+                                         Panes panes) const {
+  const model::PartMaterial& modelled = element.materials[static_cast<std::size_t>(part.part)];
+  return panes_ && part.part == model::ElementPart::glass ? panes_->look(panes, part.screen, modelled) : modelled;
+}
+
+std::vector<int> StoredElements::mesh_key(int stored, const model::ColouredElement& element, Panes panes) const {
   std::vector<int> key{stored};
   for (const StoredElement::Part& part : (*this)[stored].parts) {
-    const model::PartMaterial& look = element.materials[static_cast<std::size_t>(part.part)];
+    const model::PartMaterial look = this->look(part, element, panes);
     key.insert(key.end(), {look.material, look.colour.r, look.colour.g, look.colour.b});
   }
   return key;
 }
 
-int StoredElements::add_mesh(int number, const model::ColouredElement& element, const model::Region& region,
-                             MaterialName name) {
+int StoredElements::add_mesh(int number, const model::ColouredElement& element, Panes panes, MaterialName name) {
   const StoredElement& stored = (*this)[number];
-  const auto look = [&](std::size_t i) -> const model::PartMaterial& {
-    return element.materials[static_cast<std::size_t>(stored.parts[i].part)];
-  };
+  const auto look = [&](std::size_t i) { return this->look(stored.parts[i], element, panes); };
   std::string json = "{\"name\":";
   append_json(json, stored.stretched ? element.element->kind : element.element->name);
   json += ",\"primitives\":[";
@@ -226,8 +231,10 @@ int StoredElements::add_mesh(int number, const model::ColouredElement& element, 
     json += "},\"indices\":";
     append_number(json, std::int64_t{indices(number, first, last)});
     json += ",\"material\":";
-    append_number(json, std::int64_t{document_.add_material(
-                            material_json(region.materials.at(look(first).material), look(first).colour, name))});
+    append_number(json,
+                  std::int64_t{document_.add_material(
+                      panes_ ? panes_->json(look(first), name)
+                             : material_json(region_.materials.at(look(first).material), look(first).colour, name))});
     json += '}';
     first = last + 1;
   }

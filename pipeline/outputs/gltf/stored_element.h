@@ -16,6 +16,7 @@ namespace blockrand::outputs {
 struct StoredElement {
   struct Part {
     model::ElementPart part = model::ElementPart::frame;
+    bool screen = false;                       ///< of glass
     int block = 0;                             ///< into `blocks`
     std::size_t first_index = 0, indices = 0;  ///< bytes into the stream, number
   };
@@ -46,30 +47,36 @@ enum class ElementVertices : std::uint8_t {
 
 class StoredElements {
  public:
-  StoredElements(GlbDocument& document, ElementVertices how) : document_(document), how_(how) {}
+  /// \param region, panes  must outlive it; panes that are not as modelled need them
+  StoredElements(GlbDocument& document, ElementVertices how, const model::Region& region,
+                 const PaneMaterials* panes = nullptr)
+      : document_(document), how_(how), region_(region), panes_(panes) {}
 
   /// Writes what was not there yet.
-  ElementForm form(const model::Element& element);
+  ElementForm form(const model::Element& element, Panes panes = Panes::as_modelled);
   const StoredElement& operator[](int stored) const { return stored_[static_cast<std::size_t>(stored)]; }
   /// The accessor of the indices of parts [first, last], which are of one block.
   int indices(int stored, std::size_t first, std::size_t last);
 
   /// What two elements with equal meshes have in common: geometry and the looks of its parts.
-  std::vector<int> mesh_key(int stored, const model::ColouredElement& element) const;
+  std::vector<int> mesh_key(int stored, const model::ColouredElement& element, Panes panes) const;
   /// Adds a mesh of the geometry in the colours of `element`; neighbouring parts that look the same are one primitive.
   /// \return its number
-  int add_mesh(int stored, const model::ColouredElement& element, const model::Region& region, MaterialName name);
+  int add_mesh(int stored, const model::ColouredElement& element, Panes panes, MaterialName name);
 
  private:
   StoredElement::Block store_block(const std::vector<float>& positions, const std::vector<std::int8_t>& normals,
                                    std::size_t count, const std::array<std::array<double, 3>, 2>& bounds);
   int store(ElementGeometry geometry, double steps, bool stretched);
+  model::PartMaterial look(const StoredElement::Part& part, const model::ColouredElement& element, Panes panes) const;
 
   GlbDocument& document_;
   ElementVertices how_;
+  const model::Region& region_;
+  const PaneMaterials* panes_;
   std::vector<StoredElement> stored_;
-  std::map<const model::Element*, ElementForm> forms_;  // looked up only: its order reaches nothing
-  std::map<std::string, int> known_;                    ///< by the bytes of the geometry
+  std::map<std::pair<const model::Element*, Panes>, ElementForm> forms_;  // looked up only: its order reaches nothing
+  std::map<std::string, int> known_;                                      ///< by the bytes of the geometry
 };
 
 }  // namespace blockrand::outputs
