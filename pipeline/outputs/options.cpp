@@ -12,6 +12,7 @@ using base::choice;
 using base::custom;
 using base::flag;
 using base::integer;
+using base::number;
 using base::OptionRecord;
 using base::OptionType;
 using base::RecordValue;
@@ -63,6 +64,8 @@ const base::Choices<CityGmlDetail> kDetails = {{"lean", CityGmlDetail::lean}, {"
 
 const base::Choices<TextureChoice> kTextures = {
     {"none", TextureChoice::none}, {"small", TextureChoice::small}, {"shared", TextureChoice::shared}};
+
+const base::Choices<GroundChoice> kGrounds = {{"none", GroundChoice::none}, {"imagery", GroundChoice::imagery}};
 
 // Places in the record: build.json keeps the order of its first versions.
 
@@ -122,6 +125,23 @@ base::OptionTable<O> which_files() {
              kDetails, &O::citygml_detail)};
 }
 
+base::Option<O> ground_pixel_option() {
+  base::Option<O> option =
+      number<O>({.name = "ground-pixel",
+                 .key = "ground_pixel",
+                 .argument = "METRES",
+                 .minimum = 0.05,
+                 .maximum = 5,
+                 .help = "size of the pixels of --ground imagery; never finer than the finest image, nor "
+                         "more than 4096 along a side of a tile's picture",
+                 .record = OptionRecord::yes},
+                &O::ground_pixel);
+  option.recorded = [recorded = option.recorded](const O& o) {
+    return o.ground == GroundChoice::none ? std::nullopt : recorded(o);
+  };
+  return option;
+}
+
 base::OptionTable<O> what_files_hold() {
   return {
       custom<O>(
@@ -139,6 +159,23 @@ base::OptionTable<O> what_files_hold() {
             return o.textures == TextureChoice::none ? std::nullopt
                                                      : std::optional(RecordValue(base::word_of(kTextures, o.textures)));
           }),
+      custom<O>(
+          {.name = "ground",
+           .key = "ground",
+           .argument = "WHAT",
+           .help = "what the ground is in GLBs: imagery lays the aerial images (--imagery) on it, over the terrain "
+                   "where there "
+                   "is one, as a picture for each tile, and replaces the ground of --surroundings; none leaves it to "
+                   "--surroundings (docs/imagery.md)",
+           .choices = {"none", "imagery"},
+           .record = OptionRecord::yes},
+          [](O& o, const std::string& text) { o.ground = base::choose(text, kGrounds); },
+          [](const O& o) { return base::word_of(kGrounds, o.ground); },
+          [](const O& o) {
+            return o.ground == GroundChoice::none ? std::nullopt
+                                                  : std::optional(RecordValue(base::word_of(kGrounds, o.ground)));
+          }),
+      ground_pixel_option(),
       choice({.name = "attributes",
               .key = "attributes",
               .argument = "WHICH",
@@ -236,6 +273,7 @@ std::vector<std::string> unread_options(const OutputOptions& o, int lod) {
       {"attributes", o.profile != usual.profile, glb, "gltf"},
       {"compress", o.compression != usual.compression, glb, "gltf"},
       {"textures", o.textures != usual.textures, glb, "gltf"},
+      {"ground", o.ground != usual.ground, glb, "gltf"},
       {"instancing", o.instancing != usual.instancing, glb && facades, "gltf, of level 3"},
       {"max-glb-bytes", o.max_glb_bytes != usual.max_glb_bytes, gltf, "gltf"},
       {"citygml-detail", o.citygml_detail != usual.citygml_detail, citygml && facades, "citygml, of level 3"},

@@ -30,12 +30,20 @@ enum class TextureChoice : std::uint8_t {
   shared,  ///< textures, shared by all tiles
 };
 
+/// What the ground looks like.
+enum class GroundChoice : std::uint8_t {
+  none,     ///< as --surroundings has it
+  imagery,  ///< as the aerial images show it
+};
+
 struct OutputOptions {
   std::vector<std::string> formats = format_names();    ///< in the order of format_names
   Instancing instancing = Instancing::ext;              ///< how GLBs hold what stands in facades
   Compression compression = Compression::tiles;         ///< of vertices, indices and places in GLBs
   AttributeProfile profile = AttributeProfile::people;  ///< what GLBs tell of a building
   TextureChoice textures = TextureChoice::none;         ///< of surfaces in GLBs
+  GroundChoice ground = GroundChoice::none;             ///< in GLBs
+  double ground_pixel = 0.2;                            ///< m, of the picture of the ground
   std::int64_t max_glb_bytes = 10'000'000;              ///< of a tile's GLB: a larger one is cut; 0: none is
   CityGmlDetail citygml_detail = CityGmlDetail::lean;   ///< of LoD3
   bool imagery = false;                                 ///< there are aerial images: imagery.json. Set by the build

@@ -24,6 +24,7 @@
 #include "pipeline/georef/lon_lat.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/extract.h"
+#include "pipeline/model/ground_mesh.h"
 #include "pipeline/model/region.h"
 #include "pipeline/model/surroundings.h"
 #include "pipeline/observation/imagery.h"
@@ -62,6 +63,8 @@ struct OutputContext {
   /// What model::Surroundings of tiles number. Null: none are made.
   const model::SurroundingCatalogue* surroundings = nullptr;
   const textures::TextureCatalogue* textures = nullptr;  ///< null: surfaces are plain
+  std::function<model::GroundMesh(model::TileId)>
+      ground_mesh{};  ///< of a tile; empty: no picture of the ground is asked for
   int workers = 1;
   const base::Memo* memo = nullptr;  ///< where an earlier run left pictures; null: nothing is remembered
 };

@@ -49,6 +49,7 @@
 #include "pipeline/run/tile_stages.h"
 #include "pipeline/run/tile_work.h"
 #include "pipeline/run/whole_model.h"
+#include "pipeline/surroundings/tile_squares.h"
 
 namespace blockrand::run {
 
@@ -106,7 +107,6 @@ attributes::AssignInputs assign_inputs(const BuildOptions& options, const BuildI
 }
 
 // ---- the tiles
-
 /// Heights of the terrain for the surroundings; empty where there is none.
 surroundings::HeightAt terrain_height(const BuildInputs& inputs, const georef::Projection& projection) {
   if (!inputs.terrain) return {};
@@ -115,6 +115,14 @@ surroundings::HeightAt terrain_height(const BuildInputs& inputs, const georef::P
     const auto range = inputs.terrain->range_along({&at, 1});
     return range ? std::optional(range->lowest) : std::nullopt;
   };
+}
+
+/// The ground that pictures are laid on; empty where none is asked for.
+std::function<model::GroundMesh(model::TileId)> ground_mesh_of(const BuildOptions& options, const BuildInputs& inputs,
+                                                               const georef::Projection& projection) {
+  if (options.outputs.ground != outputs::GroundChoice::imagery) return {};
+  return [&projection, height = terrain_height(inputs, projection), level = options.ground_height.value_or(0)](
+             model::TileId tile) { return surroundings::ground_mesh(projection, tile, height, level); };
 }
 
 /// What the tiles add up to, taken in their order.
@@ -149,7 +157,6 @@ struct Sums {
 };
 
 // ---- work of earlier runs
-
 /// Null where none is kept.
 std::unique_ptr<WorkCache> open_cache(const BuildOptions& options, const std::optional<TileChoice>& tile, bool part,
                                       base::Progress& progress) {
@@ -409,7 +416,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   outputs::OutputOptions output_options = options.outputs;
   output_options.surroundings = options.surroundings.any();
   output_options.imagery = imagery.observations() != nullptr;
-  output_options.imagery_pictures = output_options.imagery && options.outputs.report && !inputs.images.empty();
+  output_options.imagery_pictures = output_options.imagery && options.outputs.report && !inputs.images.empty() && !tile;
   const outputs::OutputContext output_context{
       .options = output_options,
       .lod = options.lod,
@@ -432,6 +439,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
       .rule_file = [&](std::string_view preset) { return inputs.rule_file(preset); },
       .surroundings = inputs.surroundings ? &inputs.surroundings->shown() : nullptr,
       .textures = inputs.textures ? &*inputs.textures : nullptr,
+      .ground_mesh = ground_mesh_of(options, inputs, projection),
       .workers = workers,
       .memo = memo ? &*memo : nullptr};
   const OpenOutputs open(output_context);
@@ -589,6 +597,10 @@ BuildSummary build_area(const BuildOptions& options, const AreaPart& part, base:
 BuildSummary build(const BuildOptions& asked, base::Progress& progress) {
   BuildOptions options = asked;
   options.surroundings = asked.surroundings.settled(asked.lod);
+  if (options.outputs.ground == outputs::GroundChoice::imagery && options.imagery.images.empty())
+    throw base::UsageError(
+        "--ground imagery lays aerial images on the ground, and there is none: name one with --imagery FILE, or leave "
+        "out --ground");
   if (options.areas > 0) return build_in_areas(options, progress);
   if (options.memory_limit > 0 && options.settings.empty())  // a region's settings hold for builds of both kinds
     throw base::UsageError("--memory-limit says how many areas are built at a time: it needs --areas");

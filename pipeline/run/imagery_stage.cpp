@@ -82,7 +82,7 @@ std::vector<std::vector<model::Point2>> kept_areas(const attributes::Overrides& 
 ImageryStage::ImageryStage(const BuildOptions& options, const BuildInputs& inputs, LocatedExtract& located,
                            base::Progress& progress)
     : options_(options), inputs_(inputs), located_(located), progress_(progress) {
-  check_images(inputs, located, progress);
+  if (!inputs.tile) check_images(inputs, located, progress);  // they need not show every tile
   const bool looks = !inputs.images.empty();
   const bool keeps = std::ranges::any_of(inputs.overrides.entries, &attributes::OverrideEntry::keeps_place);
   if (looks && keeps) kept_areas_ = kept_areas(inputs.overrides, located);

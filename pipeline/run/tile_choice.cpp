@@ -111,7 +111,8 @@ std::optional<TileChoice> choose_tile(const BuildOptions& options) {
   if (options.pinned.empty())
     throw base::UsageError(
         "--tile needs --pinned build.json of a build of the whole extract: a tile alone cannot choose the CRS");
-  if (!options.imagery.images.empty())
+  const bool shows_images = options.outputs.ground == outputs::GroundChoice::imagery;
+  if (!options.imagery.images.empty() && !shows_images)
     throw base::UsageError(
         "--tile takes what the images show from the build of --pinned (its imagery.json): leave out --imagery");
   if (options.bbox) throw base::UsageError("--tile and --bbox contradict each other");
@@ -121,6 +122,10 @@ std::optional<TileChoice> choose_tile(const BuildOptions& options) {
   choice.tile_level = choice.id.level;
   choice.facts = read_region_facts(options.pinned, options);
   choice.imagery = read_imagery(options.pinned, choice.facts.imagery_sha256);
+  const std::size_t shown = choice.imagery ? choice.imagery->images.size() : 0;
+  if (shows_images && shown != options.imagery.images.size())
+    throw base::UsageError("--ground imagery shows a tile in the images of the build of --pinned, which had " +
+                           std::to_string(shown) + ": name the same with --imagery, in the same order");
   const georef::GeoBox window = georef::with_halo(choice.id, kHalo);
   choice.window = {window.west, window.south, window.east, window.north};
   return choice;

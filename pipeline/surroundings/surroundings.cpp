@@ -6,11 +6,13 @@
 #include <set>
 
 #include "pipeline/georef/tiles.h"
+#include "pipeline/model/osm_keys.h"
 #include "pipeline/surroundings/account.h"
 #include "pipeline/surroundings/ground_surfaces.h"
 #include "pipeline/surroundings/line_bodies.h"
 #include "pipeline/surroundings/placing.h"
 #include "pipeline/surroundings/portal_bodies.h"
+#include "pipeline/surroundings/tile_squares.h"
 #include "pipeline/surroundings/water_level.h"
 #include "pipeline/surroundings/wire_bodies.h"
 
@@ -124,27 +126,7 @@ SurroundingsFinder::SurroundingsFinder(const SurroundingInputs& inputs, Surround
     : in_(inputs), layers_(layers), height_(std::move(height)), level_(level), seed_(seed), claims_(inputs) {}
 
 std::vector<SquareIndex> SurroundingsFinder::squares_of(model::TileId tile) const {
-  const georef::GeoBox bounds = georef::bounds(tile);
-  PlanBox box;
-  constexpr int kSteps = 8;  // parallels are bent in the plane
-  for (int i = 0; i <= kSteps; ++i)
-    for (int k = 0; k <= kSteps; ++k) {
-      const georef::LonLat at = bounds.at(i / static_cast<double>(kSteps), k / static_cast<double>(kSteps));
-      const Point2 p = in_.projection.forward(at.lon, at.lat);
-      if (std::isfinite(p.x) && std::isfinite(p.y)) box.include(p);
-    }
-  std::vector<SquareIndex> out;
-  if (box.empty()) return out;
-  const SquareIndex low = square_of({box.minimum.x - 1, box.minimum.y - 1});
-  const SquareIndex high = square_of({box.maximum.x + 1, box.maximum.y + 1});
-  for (std::int32_t y = low.y; y <= high.y; ++y)
-    for (std::int32_t x = low.x; x <= high.x; ++x) {
-      const georef::LonLat at = in_.projection.inverse(box_of({x, y}).centre());
-      const model::Location place{static_cast<std::int32_t>(std::lround(at.lon * 1e7)),
-                                  static_cast<std::int32_t>(std::lround(at.lat * 1e7))};
-      if (georef::tile_of(place, tile.level) == tile) out.push_back({x, y});
-    }
-  return out;
+  return squares_of_tile(in_.projection, tile);
 }
 
 model::Surroundings SurroundingsFinder::around(model::TileId tile) const {

@@ -40,7 +40,7 @@ bool is_format(std::string_view key) {
 
 namespace {
 
-constexpr std::string_view kSurroundings = "_surroundings";
+constexpr std::string_view kSurroundings = "_surroundings", kGround = "_ground";
 
 /// A file of a tile, whatever is in it.
 std::optional<TilePath> any_tile_path(std::string_view path) {
@@ -62,17 +62,22 @@ std::optional<TilePath> any_tile_path(std::string_view path) {
 
 }  // namespace
 
+bool is_ground(std::string_view path) { return path.ends_with("_ground.glb"); }
+
 std::optional<TilePath> tile_path(std::string_view path) {
   std::optional<TilePath> found = any_tile_path(path);
-  if (found && found->tile.ends_with(kSurroundings)) found.reset();
+  if (found && (found->tile.ends_with(kSurroundings) || is_ground(path))) found.reset();
   return found;
 }
 
 std::optional<TilePath> surroundings_path(std::string_view path) {
   std::optional<TilePath> found = any_tile_path(path);
-  if (!found || !found->tile.ends_with(kSurroundings)) return std::nullopt;
-  found->tile.resize(found->tile.size() - kSurroundings.size());
-  return found;
+  for (const std::string_view ending : {kSurroundings, kGround}) {
+    if (!found || !found->tile.ends_with(ending) || (ending == kGround && !is_ground(path))) continue;
+    found->tile.resize(found->tile.size() - ending.size());
+    return found;
+  }
+  return std::nullopt;
 }
 
 std::string explained_tile(std::string_view path) { return between(path, "explain/", ".jsonl.gz"); }

@@ -64,7 +64,10 @@ struct TilePath {
 /// \returns  nothing for files of the whole build, and for files of surroundings
 std::optional<TilePath> tile_path(std::string_view path);
 
-/// "citygml/15_1_2_surroundings.gml": CityGML of the tile "15_1_2"; nothing for files of other kinds.
+/// "tiles/15/1/2_ground.glb": the ground as a picture.
+bool is_ground(std::string_view path);
+
+/// "citygml/15_1_2_surroundings.gml": CityGML of the tile "15_1_2"; pictures of the ground count; nothing for files of other kinds.
 std::optional<TilePath> surroundings_path(std::string_view path);
 
 /// "explain/15_1_2.jsonl.gz" → "15_1_2"; empty for other files.

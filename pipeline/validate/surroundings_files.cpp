@@ -202,15 +202,19 @@ void read_sequence(std::string_view text, Checker& check, SurroundingsFile& out)
 class GlbReader {
  public:
   GlbReader(std::string_view bytes, const std::string& name, Checker& check, SurroundingsFile& out)
-      : glb_(bytes, name, out.findings), check_(check), out_(out) {}
+      : glb_(bytes, name, out.findings), check_(check), out_(out), ground_(is_ground(name)) {}
 
   void read(const TilesetEntry* entry) {
     if (!glb_.readable()) return;
-    const Json* metadata = member(member(&glb_.json(), "extensions"), "EXT_structural_metadata");
-    const Json* table = element(member(metadata, "propertyTables"), 0);
-    if (!table || text(member(table, "class")) != "surrounding")
-      return check_.rule({}, "it has no table of surroundings");
-    rows_ = out_.objects = whole(member(table, "count")).value_or(0);
+    if (ground_) {
+      read_pictures();
+    } else {
+      const Json* metadata = member(member(&glb_.json(), "extensions"), "EXT_structural_metadata");
+      const Json* table = element(member(metadata, "propertyTables"), 0);
+      if (!table || text(member(table, "class")) != "surrounding")
+        return check_.rule({}, "it has no table of surroundings");
+      rows_ = out_.objects = whole(member(table, "count")).value_or(0);
+    }
     if (!member(member(member(&glb_.json(), "asset"), "extras"), "georeference"))
       check_.rule({}, "it does not say where it lies");
     const Json* nodes = member(&glb_.json(), "nodes");
@@ -222,6 +226,20 @@ class GlbReader {
   }
 
  private:
+  void read_pictures() {
+    out_.objects = 1;
+    if (text(member(member(&glb_.json(), "asset"), "copyright")).empty())
+      check_.rule({}, "it does not say whose images it shows");
+    const Json* images = member(&glb_.json(), "images");
+    for (std::uint64_t i = 0; i < length(images); ++i) {
+      const std::string uri = text(member(element(images, i), "uri"));
+      if (uri.empty() || uri.find('/') != std::string::npos)
+        check_.rule({}, "a picture of the ground is no file beside it");
+      else
+        out_.pictures.push_back(uri);
+    }
+  }
+
   void node(const Json& node) {
     const Json* instances = member(member(&node, "extensions"), "EXT_mesh_gpu_instancing");
     if (instances) {
@@ -236,7 +254,7 @@ class GlbReader {
     const Json* primitives = member(element(meshes, *number), "primitives");
     for (std::uint64_t p = 0; p < length(primitives); ++p) {
       const Json* attributes = member(element(primitives, p), "attributes");
-      features(member(attributes, "_FEATURE_ID_0"));
+      if (!ground_) features(member(attributes, "_FEATURE_ID_0"));
       points(member(attributes, "POSITION"));
     }
   }
@@ -257,6 +275,7 @@ class GlbReader {
   GlbContainer glb_;
   Checker& check_;
   SurroundingsFile& out_;
+  bool ground_;
   std::uint64_t rows_ = 0;
   std::vector<model::Point3> points_;  ///< east, north, up
 };
@@ -282,6 +301,9 @@ SurroundingsFile checked_file(const std::string& folder, const std::string& path
     entry = &known->second;
   }
   out = read_surroundings(format, *bytes, path, entry);
+  for (const std::string& picture : out.pictures)
+    if (!std::filesystem::exists(std::filesystem::path(full).parent_path() / picture))
+      out.findings.push_back({Check::file_unreadable, path, "", "its picture " + picture + " is not there"});
   if (schema && format == Format::citygml)
     for (Finding& finding : schema->validate(*bytes, path)) out.findings.push_back(std::move(finding));
   return out;

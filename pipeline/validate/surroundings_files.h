@@ -18,8 +18,9 @@ namespace blockrand::validate {
 
 /// What is known of one file.
 struct SurroundingsFile {
-  std::vector<std::string> ids;  ///< of its city objects, in their order
-  std::uint64_t objects = 0;     ///< of a GLB, which gives no ids: rows of its table
+  std::vector<std::string> ids;       ///< of its city objects, in their order
+  std::uint64_t objects = 0;          ///< of a GLB, which gives no ids: rows of its table; of a ground 1
+  std::vector<std::string> pictures;  ///< that a ground names, beside it
   std::vector<Finding>
       findings;  ///< FILE_UNREADABLE, CITYGML_RULE, CITYJSON_RULE, GLB_RULE, TILE_BOUNDS; at most a hundred
 };
@@ -27,7 +28,8 @@ struct SurroundingsFile {
 /// Checks that a CityGML file is well-formed, has known city objects, gives gml:ids once, and has what its references and
 /// appearances name; that a CityJSON sequence is JSON line by line, has known city objects, gives ids once, and has the vertices,
 /// templates and materials that its geometries count; that a GLB can be taken apart, has a property table whose rows are those that
-/// its vertices and placed objects name, and lies in its tile. Never throws on account of the bytes.
+/// its vertices and placed objects name, and lies in its tile; that one of the ground says whose pictures it shows, and names files beside
+/// it. Never throws on account of the bytes.
 /// \param name  of the file, for findings  \param entry  of a GLB in the tileset; null: where it lies is not checked
 SurroundingsFile read_surroundings(Format format, std::string_view bytes, const std::string& name,
                                    const TilesetEntry* entry = nullptr);

@@ -1,5 +1,6 @@
 #include "pipeline/outputs/gltf/glb_document.h"
 
+#include <algorithm>
 #include <bit>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -155,11 +156,17 @@ int GlbDocument::add_texture(std::string png) {
   std::string json = "{";
   field(json, "bufferView", static_cast<std::size_t>(add_view(std::move(png))));
   images_.push_back(json + ",\"mimeType\":\"image/png\"}");
-  textures_.push_back({.repeated = false, .extensions = {}, .image = images_.size() - 1});
+  textures_.push_back({.sampler = Sampler::nearest, .extensions = {}, .image = images_.size() - 1});
   return static_cast<int>(textures_.size()) - 1;
 }
 int GlbDocument::add_repeated_texture(const std::string& webp, const std::string& png) {
-  const auto [place, added] = repeated_textures_.try_emplace(webp, static_cast<int>(textures_.size()));
+  return add_file_texture(webp, png, Sampler::repeated);
+}
+int GlbDocument::add_covering_texture(const std::string& webp, const std::string& png) {
+  return add_file_texture(webp, png, Sampler::covering);
+}
+int GlbDocument::add_file_texture(const std::string& webp, const std::string& png, Sampler sampler) {
+  const auto [place, added] = file_textures_.try_emplace(webp, static_cast<int>(textures_.size()));
   if (!added) return place->second;
   for (const auto& [path, type] : {std::pair(&png, "image/png"), std::pair(&webp, "image/webp")}) {
     std::string image = "{\"mimeType\":\"";
@@ -170,7 +177,7 @@ int GlbDocument::add_repeated_texture(const std::string& webp, const std::string
   }
   std::string extensions = "\"extensions\":{\"EXT_texture_webp\":{";
   field(extensions, "source", images_.size() - 1);
-  textures_.push_back({.repeated = true, .extensions = extensions + "}},", .image = images_.size() - 2});
+  textures_.push_back({.sampler = sampler, .extensions = extensions + "}},", .image = images_.size() - 2});
   use("EXT_texture_webp", false);
   return place->second;
 }
@@ -271,17 +278,22 @@ std::string GlbDocument::write(Compression compression) {
   append_list(json, "materials", materials_);
   append_list(json, "images", images_);
   if (!textures_.empty()) {
-    const std::size_t looked_up = textures_.size() - repeated_textures_.size();
     std::vector<std::string> samplers, textures;
-    // Nearest pixel, not beyond the edge.
-    if (looked_up > 0) samplers.emplace_back("{\"magFilter\":9728,\"minFilter\":9728,\"wrapS\":33071,\"wrapT\":33071}");
-    // Mixed and repeated; from afar the mean.
-    if (!repeated_textures_.empty())
-      samplers.emplace_back("{\"magFilter\":9729,\"minFilter\":9987,\"wrapS\":10497,\"wrapT\":10497}");
+    std::map<Sampler, std::int64_t> number;
+    for (const auto& [sampler, json_text] :
+         {// Nearest pixel, not beyond the edge.
+          std::pair(Sampler::nearest, "{\"magFilter\":9728,\"minFilter\":9728,\"wrapS\":33071,\"wrapT\":33071}"),
+          // Mixed and repeated; from afar the mean.
+          std::pair(Sampler::repeated, "{\"magFilter\":9729,\"minFilter\":9987,\"wrapS\":10497,\"wrapT\":10497}"),
+          std::pair(Sampler::covering, "{\"magFilter\":9729,\"minFilter\":9987,\"wrapS\":33071,\"wrapT\":33071}")}) {
+      if (std::ranges::none_of(textures_, [&](const Texture& t) { return t.sampler == sampler; })) continue;
+      number[sampler] = static_cast<std::int64_t>(samplers.size());
+      samplers.emplace_back(json_text);
+    }
     for (const Texture& texture : textures_) {
       std::string& text = textures.emplace_back("{" + texture.extensions);
       text += "\"sampler\":";
-      append_number(text, std::int64_t{texture.repeated && looked_up > 0 ? 1 : 0});
+      append_number(text, number.at(texture.sampler));
       text += ",\"source\":";
       append_number(text, static_cast<std::int64_t>(texture.image));
       text += '}';

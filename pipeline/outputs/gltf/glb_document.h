@@ -93,6 +93,8 @@ class GlbDocument {
   /// Pictures in files of their own, mixed between pixels and repeated: WebP (EXT_texture_webp), and PNG for readers without
   /// it. Equal ones are one.
   int add_repeated_texture(const std::string& webp, const std::string& png);
+  /// The same of a picture that covers a mesh once: not repeated beyond its edges.
+  int add_covering_texture(const std::string& webp, const std::string& png);
   int add_mesh(std::string json);
   int add_node(std::string json);
   /// A node that the scene holds. Without any there is no scene: an empty one is not allowed.
@@ -118,13 +120,15 @@ class GlbDocument {
   std::map<Stream, std::size_t> expected_;
   std::map<Stream, int> view_numbers_;
   std::map<std::string, int> material_numbers_;
+  enum class Sampler : std::uint8_t { nearest, repeated, covering };
+  int add_file_texture(const std::string& webp, const std::string& png, Sampler sampler);
   struct Texture {
-    bool repeated = false;  ///< by the other sampler
+    Sampler sampler = Sampler::nearest;
     std::string extensions;
     std::size_t image = 0;
   };
   std::vector<Texture> textures_;
-  std::map<std::string, int> repeated_textures_;  ///< by their WebP
+  std::map<std::string, int> file_textures_;  ///< by their WebP
   std::vector<std::string> accessors_, materials_, meshes_, nodes_, images_;
   std::vector<int> roots_;
   std::map<std::string, bool> used_;

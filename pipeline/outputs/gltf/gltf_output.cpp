@@ -24,8 +24,10 @@
 #include "pipeline/georef/tile_frame.h"
 #include "pipeline/georef/tiles.h"
 #include "pipeline/outputs/gltf/glb_writer.h"
+#include "pipeline/outputs/gltf/ground_glb.h"
 #include "pipeline/outputs/gltf/surroundings_glb.h"
 #include "pipeline/outputs/gltf/texture_set.h"
+#include "pipeline/outputs/gltf/tile_ground.h"
 #include "pipeline/outputs/tileset/tileset.h"
 
 namespace blockrand::outputs {
@@ -35,6 +37,7 @@ using model::Point3;
 
 constexpr const char* kModelFile = "model.glb";
 constexpr const char* kSurroundingsFile = "surroundings.glb";
+constexpr const char* kGroundFile = "ground.glb";
 /// m. Farther from its origin, the single-precision vertices of model.glb are coarser than 4 mm.
 constexpr double kFineModelRadius = 65'536;
 
@@ -98,15 +101,11 @@ void write_coarser_level(const Glb& glb, const std::string& place, TileEntry& en
   entry.max = {std::max(entry.max.x, glb.max.x), std::max(entry.max.y, glb.max.y), std::max(entry.max.z, glb.max.z)};
 }
 
-/// Writes the surroundings of a tile beside its buildings, in their frame.
-void write_surroundings_tile(const FinishedTile& tile, const std::string& place, const GlbOptions& options, bool alone,
-                             TileEntry& entry, const OutputContext& context, std::vector<base::PublishedFile>& files) {
-  if (tile.surroundings == nullptr || context.surroundings == nullptr || tile.surroundings->empty()) return;
-  const Glb glb = write_surroundings_glb(*tile.surroundings, *context.surroundings, options);
-  if (glb.triangles == 0) return;
-  entry.surroundings = {place + "_surroundings.glb", glb.min, glb.max};
+/// Puts a GLB beside the buildings of a tile. \param alone  nothing else is in it so far
+void put_beside(const Glb& glb, const std::string& uri, bool alone, TileEntry& entry, const OutputContext& context,
+                std::vector<base::PublishedFile>& files) {
   note_textures(glb, entry);
-  write_served(entry.surroundings->uri, glb.bytes, context.options, context.folder, files);
+  write_served(uri, glb.bytes, context.options, context.folder, files);
   const auto widen = [&](Point3& low, Point3& high) {
     low = {std::min(low.x, glb.min.x), std::min(low.y, glb.min.y), std::min(low.z, glb.min.z)};
     high = {std::max(high.x, glb.max.x), std::max(high.y, glb.max.y), std::max(high.z, glb.max.z)};
@@ -116,6 +115,38 @@ void write_surroundings_tile(const FinishedTile& tile, const std::string& place,
   } else {
     widen(entry.min, entry.max);
   }
+}
+
+/// Of the surroundings, what GLBs show: a picture replaces their ground.
+model::Surroundings shown_surroundings(const model::Surroundings& all, const OutputContext& context) {
+  model::Surroundings out = all;
+  if (context.ground_mesh) out.surfaces.clear();
+  return out;
+}
+
+/// Writes the surroundings of a tile beside its buildings, in their frame.
+void write_surroundings_tile(const FinishedTile& tile, const std::string& place, const GlbOptions& options, bool alone,
+                             TileEntry& entry, const OutputContext& context, std::vector<base::PublishedFile>& files) {
+  if (tile.surroundings == nullptr || context.surroundings == nullptr || tile.surroundings->empty()) return;
+  const Glb glb = context.ground_mesh ? write_surroundings_glb(shown_surroundings(*tile.surroundings, context),
+                                                               *context.surroundings, options)
+                                      : write_surroundings_glb(*tile.surroundings, *context.surroundings, options);
+  if (glb.triangles == 0) return;
+  entry.surroundings = {place + "_surroundings.glb", glb.min, glb.max};
+  put_beside(glb, entry.surroundings->uri, alone, entry, context, files);
+}
+
+/// Writes the ground of a tile beside its buildings, in their frame.
+void write_ground_tile(const TileGround& ground, const std::string& place, const GlbOptions& options, bool alone,
+                       TileEntry& entry, const OutputContext& context, std::vector<base::PublishedFile>& files) {
+  const auto beside = [](const std::string& path) { return path.substr(path.find_last_of('/') + 1); };
+  const GroundPart part{&ground.mesh, &ground.cover, beside(ground.webp), beside(ground.png)};
+  const Glb glb = write_ground_glb({&part, 1}, options);
+  entry.ground = {place + "_ground.glb", glb.min, glb.max};
+  entry.ground_pixel = ground.cover.pixel;
+  entry.ground_cells = ground.cover.shown.size();
+  entry.bare_cells = static_cast<std::uint64_t>(std::ranges::count(ground.cover.shown, false));
+  put_beside(glb, entry.ground->uri, alone, entry, context, files);
 }
 
 /// Geodetic bounds of a box in a local frame, from its corners and the middle of its underside, which lies deepest.
@@ -225,12 +256,16 @@ class PieceWriter {
 };
 
 /// Writes a tile's GLBs. \returns its entry in the tileset; none where its GLB would show nothing
-std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& context, const TextureSet* textures) {
+std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& context, const TextureSet* textures,
+                                    const std::optional<TileGround>& ground_picture) {
   const model::Region& region = tile.region;
   const model::TileId id = region.tile;
   const GeoidPlane plane = geoid_plane(context, georef::centre(id));
   double ground = lowest_ground(region);
-  if (region.buildings.empty() && tile.surroundings) ground = lowest_point(*tile.surroundings).value_or(0);
+  if (region.buildings.empty() && ground_picture)
+    ground = lowest_point(ground_picture->mesh);
+  else if (region.buildings.empty() && tile.surroundings)
+    ground = lowest_point(*tile.surroundings).value_or(0);
   const double origin_height = model::snap(ground + plane.at);
   const georef::TileFrame frame(context.projection, id, origin_height);
   GlbOptions options = glb_options(context, frame.frame());
@@ -271,16 +306,17 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
   }
   entry.enu_to_ecef = options.frame.enu_to_ecef;
   if (!empty) write_coarser_level(roofs, place, entry, context, tile.files);
-  write_surroundings_tile(tile, place, options, empty, entry, context, tile.files);
-  if (empty && !entry.surroundings) return std::nullopt;
+  if (ground_picture) write_ground_tile(*ground_picture, place, options, empty, entry, context, tile.files);
+  write_surroundings_tile(tile, place, options, empty && !entry.ground, entry, context, tile.files);
+  if (empty && !entry.surroundings && !entry.ground) return std::nullopt;
   set_bounds(entry, frame.frame());
   return entry;
 }
 
-/// Writes model.glb, and surroundings.glb in the same frame. \param around  empty: none
+/// Writes model.glb, and surroundings.glb and ground.glb in the same frame. \param around, grounds  empty: none
 /// \param used  gets the textures that they show
-void write_model(const FinishedBuild& build, const model::Surroundings& around, const OutputContext& context,
-                 const TextureSet* textures, std::set<std::string>& used) {
+void write_model(const FinishedBuild& build, const model::Surroundings& around, std::span<const TileGround> grounds,
+                 const OutputContext& context, const TextureSet* textures, std::set<std::string>& used) {
   const model::Region& whole = build.whole;
   const double origin_height = model::snap(lowest_ground(whole));
   const GeoidPlane plane = geoid_plane(context, context.centre);
@@ -307,6 +343,13 @@ void write_model(const FinishedBuild& build, const model::Surroundings& around, 
     build.tell(kSurroundingsFile, fmt::format("{} triangles, {}", base::with_thousands(ground.triangles),
                                               base::with_byte_unit(ground.bytes.size())));
     build.files.push_back(context.folder.write(kSurroundingsFile, ground.bytes));
+  }
+  if (!grounds.empty()) {
+    std::vector<GroundPart> parts;
+    for (const TileGround& g : grounds) parts.push_back({&g.mesh, &g.cover, g.webp, g.png});
+    const Glb ground = write_ground_glb(parts, o);
+    build.tell(kGroundFile, fmt::format("{} triangles", base::with_thousands(ground.triangles)));
+    build.files.push_back(context.folder.write(kGroundFile, ground.bytes));
   }
   Glb glb;
   try {
@@ -346,10 +389,16 @@ class GltfOutput : public OutputOf<std::optional<TileEntry>> {
   std::any write_tile(FinishedTile& tile) const override {
     if (context_.options.single_glb && tile.surroundings != nullptr && !tile.surroundings->empty()) {
       const std::lock_guard lock(mutex_);
-      around_[tile.region.tile] = *tile.surroundings;
+      around_[tile.region.tile] = shown_surroundings(*tile.surroundings, context_);
     }
-    return tiled_ && (tile.has_parts || tile.surroundings != nullptr) ? write_glbs(tile, context_, textures())
-                                                                      : std::nullopt;
+    const std::optional<TileGround> ground = write_tile_ground(tile, context_);
+    if (context_.options.single_glb && ground) {
+      const std::lock_guard lock(mutex_);
+      grounds_[tile.region.tile] = *ground;
+    }
+    return tiled_ && (tile.has_parts || tile.surroundings != nullptr || ground)
+               ? write_glbs(tile, context_, textures(), ground)
+               : std::nullopt;
   }
   void take(const FinishedTile&, std::any product) override {
     if (auto& entry = *std::any_cast<std::optional<TileEntry>>(&product)) tiles_.push_back(std::move(*entry));
@@ -370,6 +419,7 @@ class GltfOutput : public OutputOf<std::optional<TileEntry>> {
       too_light += entry.too_light;
     }
     if (context_.options.single_glb) write_whole(build, used);
+    tell_grounds(build);
     if (!textures_) return;
     const auto [webp, png] = textures_->write(used, context_.folder, build.files);
     std::string figures = fmt::format("{} textures, {} as WebP, {} as PNG", used.size(), base::with_byte_unit(webp),
@@ -383,6 +433,13 @@ class GltfOutput : public OutputOf<std::optional<TileEntry>> {
  private:
   const TextureSet* textures() const { return textures_ ? &*textures_ : nullptr; }
 
+  void tell_grounds(const FinishedBuild& build) const {
+    GroundFigures figures;
+    for (const TileEntry& entry : tiles_) figures.add(entry);
+    if (const std::string text = figures.text(); !text.empty()) build.tell(kTileFolder, text);
+    if (const std::string why = figures.coarser(context_.options.ground_pixel); !why.empty()) build.warn(why);
+  }
+
   void write_whole(const FinishedBuild& build, std::set<std::string>& used) {
     model::Surroundings around;
     for (auto& [tile, of_tile] : around_) {
@@ -391,7 +448,10 @@ class GltfOutput : public OutputOf<std::optional<TileEntry>> {
       std::ranges::move(of_tile.objects, std::back_inserter(around.objects));
     }
     around_.clear();
-    write_model(build, around, context_, textures(), used);
+    std::vector<TileGround> grounds;
+    for (auto& [tile, ground] : grounds_) grounds.push_back(std::move(ground));
+    grounds_.clear();
+    write_model(build, around, grounds, context_, textures(), used);
   }
 
   const OutputContext& context_;
@@ -400,6 +460,7 @@ class GltfOutput : public OutputOf<std::optional<TileEntry>> {
   std::vector<TileEntry> tiles_;
   mutable std::mutex mutex_;
   mutable std::map<model::TileId, model::Surroundings> around_;  ///< for model.glb, of which no tile is kept
+  mutable std::map<model::TileId, TileGround> grounds_;          ///< the same
 };
 
 }  // namespace
@@ -414,6 +475,14 @@ OutputFormat gltf_output() {
                       [](const OutputOptions& o, std::uint64_t) { return o.single_glb; }},
                      {kTextureFolder, "what surfaces of GLBs look like from near by",
                       [](const OutputOptions& o, std::uint64_t) { return o.textures != TextureChoice::none; }},
+                     {kTileFolder, "the ground as aerial images show it: _ground.glb of each tile, with its picture",
+                      [](const OutputOptions& o, std::uint64_t) {
+                        return o.writes("gltf") && o.ground == GroundChoice::imagery;
+                      }},
+                     {kGroundFile, "the ground as aerial images show it, in the frame of model.glb",
+                      [](const OutputOptions& o, std::uint64_t) {
+                        return o.single_glb && o.ground == GroundChoice::imagery;
+                      }},
                      {kSurroundingsFile, "what stands around the houses, in the frame of model.glb",
                       [](const OutputOptions& o, std::uint64_t) { return o.single_glb && o.surroundings; }}},
           .manual = {{"tileset.json, tiles/",

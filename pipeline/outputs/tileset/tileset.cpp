@@ -163,14 +163,19 @@ class Writer {
   /// The tile's levels, one inside the other in the same box; the outermost has the transform.
   void leaf(const TileEntry& tile) {
     assert(tile.id.level == leaves_.front().tile->id.level);
-    if (!tile.surroundings) return buildings(tile, true);
+    if (!tile.surroundings && !tile.ground) return buildings(tile, true);
     level(tile, true, options_.parent_error);
-    out_ += ",\"refine\":\"ADD\",\"children\":[{";
-    box(tile.surroundings->min, tile.surroundings->max);
-    out_ += ',';
-    geometric_error(0);
-    content(tile.surroundings->uri);
-    out_ += '}';
+    out_ += ",\"refine\":\"ADD\",\"children\":[";
+    for (const std::optional<TilePiece>* beside : {&tile.ground, &tile.surroundings}) {
+      if (!*beside) continue;
+      if (out_.back() != '[') out_ += ',';
+      out_ += '{';
+      box((*beside)->min, (*beside)->max);
+      out_ += ',';
+      geometric_error(0);
+      content((*beside)->uri);
+      out_ += '}';
+    }
     if (!tile.uri.empty() || !tile.pieces.empty()) {
       out_ += ',';
       buildings(tile, false);

@@ -36,6 +36,9 @@ struct TileEntry {
   std::vector<TilePiece> pieces;                    ///< instead of the one file
   std::vector<CoarserLevel> coarser;                ///< the coarsest first; errors fall
   std::optional<TilePiece> surroundings;            ///< a tile of its own beside that of the buildings
+  std::optional<TilePiece> ground;                  ///< another: the ground as a picture
+  double ground_pixel = 0;                          ///< m, of that picture
+  std::uint64_t ground_cells = 0, bare_cells = 0;   ///< of its mesh; of them without a pixel of any image
   std::array<double, 16> enu_to_ecef{};             ///< column-major
   model::Point3 min, max;                           ///< of all levels: m east, north, up of the tile's origin
   double west = 0, south = 0, east = 0, north = 0;  ///< degrees; west > east where the mesh crosses 180°
@@ -57,8 +60,8 @@ struct TilesetOptions {
 /// A 3D Tiles 1.1 tileset.json: leaves with content in boxes (in the tile's frame, z up), above them their parents in
 /// the geodetic quadtree as regions without content, where a parent with a single child is left out but for the root.
 ///
-/// Where there are surroundings they and the buildings are both children of a tile without content: they stay when levels of
-/// buildings replace each other.
+/// Where there are surroundings or a picture of the ground, they and the buildings are children of a tile without content: they
+/// stay when levels of buildings replace each other.
 /// A tile with coarser levels is a chain of them, each replaced by the next (REPLACE), the finest last. Pieces are the children of
 /// what would have been their parent; where there is no coarser level, of a tile without content.
 ///
