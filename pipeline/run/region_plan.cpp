@@ -18,6 +18,7 @@
 namespace blockrand::run {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 std::string stamp_of(const std::string& path) {
   std::error_code error;
