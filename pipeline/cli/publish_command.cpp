@@ -123,7 +123,7 @@ bool publish_after_update(const settings::Settings& settings, base::Progress& pr
   };
   try {
     const outward::PublishReport report =
-        outward::publish(settings.publishing, outward::publish_source(settings.region), false, progress);
+        outward::publish(settings.publishing, outward::publish_source(settings.region), false, progress, true);
     progress.end();
     std::string out;
     for (const outward::PublishedPart& part : report.parts) {

@@ -1,7 +1,7 @@
 // Builds the facade of one part after the other: what rules order on its walls and on its roof is gathered, then openings are cut
 // and told. One class, its functions by subject: facades.cpp derives, facade_orders.cpp takes what rules order,
 // facade_passages.cpp opens passages, facade_roof.cpp furnishes the roof, facade_cut.cpp cuts and tells, facade_footprint.cpp
-// runs rules that begin on the footprint. Internal to this folder.
+// runs rules that begin on the footprint, facade_masonry.cpp lays stones. Internal to this folder.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +22,12 @@
 #include "pipeline/facades/footprint_rules.h"
 #include "pipeline/facades/grammar_library.h"
 #include "pipeline/facades/leaf_polygons.h"
+#include "pipeline/facades/masonry_orders.h"
 #include "pipeline/facades/openings.h"
 #include "pipeline/facades/passages.h"
 #include "pipeline/facades/roof_elements.h"
 #include "pipeline/facades/rule_geometry.h"
+#include "pipeline/facades/wall_masonry.h"
 #include "pipeline/facades/wall_paint.h"
 #include "pipeline/model/region.h"
 
@@ -200,6 +202,14 @@ class FacadeBuilder {
   /// Walls, and the reveals of their openings, look as rules say.
   void paint(model::Detail& detail) const;
 
+  /// Where stones are to be laid, if the parameters ask for it. \param segments  with their corners linked
+  void note_masonry(const model::BuildingPart& part, const std::vector<WallFrame>& walls,
+                    const std::vector<FacadeSegment>& segments, std::uint64_t seed);
+  /// Stones round the openings that were cut. \param opened  by asked_: has an opening
+  void apply_masonry(model::Detail& detail, const std::vector<WallFrame>& walls, const std::vector<bool>& opened);
+  /// Which bond a wall gets, and what it looks like; none: no stones show on such a wall.
+  std::optional<std::pair<masonry::Bond, MasonryLook>> masonry_look(std::uint32_t face) const;
+
   void cut(model::BuildingPart& part, const std::vector<WallFrame>& walls);
 
   /// Windows that yield to a passage are no failure; doors at mapped entrances are.
@@ -241,7 +251,9 @@ class FacadeBuilder {
   std::size_t before_wall_ = 0;        ///< sunk bodies of rules that got no opening
   std::size_t missed_doors_ = 0;       ///< those of them that are doors at mapped entrances
   std::set<std::string> told_;
-  std::vector<PaintOrder> paint_orders_;                  ///< of the part at work
+  std::vector<PaintOrder> paint_orders_;         ///< of the part at work
+  std::optional<MasonryOrders> masonry_orders_;  ///< of the part at work
+  std::vector<MasonryRun> masonry_runs_;
   std::map<std::uint32_t, model::PartMaterial> painted_;  ///< by face: walls that rules gave another look
   std::map<std::string, std::size_t> dropped_;            ///< leaves by "Symbol: why"
   PartMaterials usual_materials_;                         ///< of the part at work

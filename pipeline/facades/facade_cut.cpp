@@ -146,6 +146,7 @@ void FacadeBuilder::cut(BuildingPart& part, const std::vector<WallFrame>& walls)
     detail.triangles = *closed_.triangles;
     paint(detail);
     apply_paint(detail, walls, {});
+    apply_masonry(detail, walls, {});
     finish_told(part, 0);
     return;
   }
@@ -196,6 +197,7 @@ void FacadeBuilder::cut(BuildingPart& part, const std::vector<WallFrame>& walls)
   std::vector<bool> opened(asked_.size());
   for (std::size_t i = 0; i < asked_.size(); ++i) opened[i] = opening_of[i] != model::kNoOpening;
   apply_paint(detail, walls, opened);
+  apply_masonry(detail, walls, opened);
   finish_told(part, left_out);
 }
 

@@ -65,6 +65,7 @@ void FacadeBuilder::build(model::Building& building, BuildingPart& part, masses:
     derive_segment(*grammar, {building, part, walls[segment.wall], segment, eaves, nullptr, &defaults_}, seed, row);
   }
   tell_unpainted(building, part);
+  note_masonry(part, walls, segments, seed);
   furnished_.reset();
   if (mass && grammar->roof && main_body(building) == &part) {
     furnish(*grammar, building, part, *mass, walls, segments, eaves, seed, row);

@@ -12,6 +12,7 @@
 
 #include "pipeline/base/error.h"
 #include "pipeline/facades/facade_context.h"
+#include "pipeline/facades/masonry_orders.h"
 #include "pipeline/facades/rule_geometry.h"
 #include "pipeline/model/element.h"
 
@@ -150,6 +151,8 @@ GrammarLibrary::GrammarLibrary(const std::string& folder, std::span<const Preset
   for (const auto& file : files_)
     for (const grammar::Slot& slot : file->program.slots)
       if (!slot.constant) read_.insert(slot.name);
+  // Facades read these themselves, whatever the rule file.
+  for (const std::string_view name : masonry_parameters()) read_.emplace(name);
   std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.preset < b.preset; });
 }
 
@@ -179,6 +182,7 @@ const GrammarLibrary::Entry* GrammarLibrary::find(std::string_view preset) const
 }
 
 bool GrammarLibrary::reads(const Entry& entry, const std::string& parameter) {
+  if (is_masonry_parameter(parameter)) return !entry.on_footprint;
   const std::vector<std::pair<std::string, grammar::Value>> asked{{parameter, std::string()}};
   const auto has = [&](const grammar::Deriver* deriver) {
     if (!deriver) return false;

@@ -23,11 +23,14 @@ Masonry usual_masonry(Bond bond) {
   return out;
 }
 
-std::optional<LaidWall> lay(const WallToLay& wall, const Masonry& m) {
+bool can_be_laid(const Masonry& m) {
   const auto positive = [](double v) { return std::isfinite(v) && v > 0; };
-  if (!positive(m.length) || !positive(m.width) || !positive(m.height) || !positive(m.perpend) || !positive(m.bed) ||
-      m.perpend * 2 > std::min(m.width, m.length / 4) || m.bed > m.height || wall.outline.size() < 3)
-    return std::nullopt;
+  return positive(m.length) && positive(m.width) && positive(m.height) && positive(m.perpend) && positive(m.bed) &&
+         m.perpend * 2 <= std::min(m.width, m.length / 4) && m.bed <= m.height;
+}
+
+std::optional<LaidWall> lay(const WallToLay& wall, const Masonry& m) {
+  if (!can_be_laid(m) || wall.outline.size() < 3) return std::nullopt;
   LaidWall out;
   // A wall shorter than two bricks has no bond.
   if (!(wall.to - wall.from > m.width)) return out;

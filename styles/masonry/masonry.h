@@ -58,6 +58,8 @@ struct Masonry {
   double relief = 0.008;  ///< of stones before the mortar
   double course() const { return height + bed; }
 };
+/// Whether sizes make sense: positive, joints narrower than stones.
+bool can_be_laid(const Masonry& masonry);
 /// Usual sizes: Normalformat; ashlar of 0.62 x 0.30, rubble of 0.32 x 0.17, cyclopean stones of 0.60 m.
 Masonry usual_masonry(Bond bond);
 
@@ -115,7 +117,7 @@ struct LaidWall {
 /// (a quarter brick / its length) longer or shorter than their format and none is a sliver. At its right end courses of even number end
 /// long and those of odd number short, at its left end the other way: so walls agree round every corner of a house. At openings bricks
 /// are cut; no piece is narrower than a quarter.
-/// \return none where bond sizes make no sense (a length, height or joint that is not positive, joints wider than stones)
+/// \return none where can_be_laid() says so
 std::optional<LaidWall> lay(const WallToLay& wall, const Masonry& masonry);
 
 }  // namespace blockrand::masonry
