@@ -11,6 +11,10 @@ namespace {
 
 /// m. Points of a stone that lie on the end of the wall.
 constexpr double kAtCorner = 0.001;
+/// m. Points of an outline nearer than that to the line between their neighbours: a triangle there would have no area on the grid.
+constexpr double kStraight = 0.0015;
+/// m2, of a face on the grid: less is none.
+constexpr double kLeastFace = 1e-6;
 /// Share by which irregular stones stand out less or more.
 constexpr double kUneven = 0.25;
 
@@ -19,6 +23,20 @@ double cross_of(Point2 a, Point2 b, Point2 c) { return (b.x - a.x) * (c.y - a.y)
 bool is_dressing(StoneRole role) {
   return role == StoneRole::voussoir || role == StoneRole::keystone || role == StoneRole::lintel ||
          role == StoneRole::sill;
+}
+
+/// Without points on straight edges.
+Outline without_straight_points(const Outline& outline) {
+  Outline out = outline;
+  for (std::size_t i = 0; i < out.size() && out.size() > 3;) {
+    const Point2 &a = out[(i + out.size() - 1) % out.size()], &b = out[i], &c = out[(i + 1) % out.size()];
+    const double length = std::hypot(c.x - a.x, c.y - a.y);
+    if (std::fabs(cross_of(a, b, c)) < kStraight * length)
+      out.erase(out.begin() + static_cast<std::ptrdiff_t>(i));
+    else
+      ++i;
+  }
+  return out;
 }
 
 class Mesher {
@@ -30,7 +48,9 @@ class Mesher {
     left_ = shift(options.turn_left), right_ = shift(options.turn_right);
   }
 
-  void add(model::ElementMesh& mesh, const Stone& stone, bool sides) const {
+  void add(model::ElementMesh& mesh, const Stone& laid, bool sides) const {
+    Stone stone = laid;
+    stone.outline = without_straight_points(laid.outline);
     double out = o_.relief;
     const Point2 first = stone.outline.front();
     if (o_.irregular && stone.role == StoneRole::field)
@@ -105,10 +125,21 @@ class Mesher {
     top = std::move(out);
   }
 
+  /// Of a flat face; Newell.
+  static double area_of_face(const model::ElementMesh& mesh, const std::vector<std::uint32_t>& corners) {
+    model::Point3 sum;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const model::Point3 &a = mesh.vertices[corners[i]], &b = mesh.vertices[corners[(i + 1) % corners.size()]];
+      sum.x += (a.y - b.y) * (a.z + b.z), sum.y += (a.z - b.z) * (a.x + b.x), sum.z += (a.x - b.x) * (a.y + b.y);
+    }
+    return std::sqrt(sum.x * sum.x + sum.y * sum.y + sum.z * sum.z) / 2;
+  }
+
   template <class Fill>
   static void add_face(model::ElementMesh& mesh, Fill&& fill) {
     std::vector<std::uint32_t> corners;
     fill(corners);
+    if (area_of_face(mesh, corners) < kLeastFace) return;
     mesh.faces.push_back({static_cast<std::uint32_t>(mesh.indices.size()), static_cast<std::uint32_t>(corners.size()),
                           model::ElementPart::wall});
     mesh.indices.insert(mesh.indices.end(), corners.begin(), corners.end());

@@ -63,6 +63,23 @@ TEST(Relief, FacesLookOutwardsAndAreFlat) {
   }
 }
 
+TEST(Relief, NoTriangleOfAFanIsWithoutArea) {
+  for (const Bond bond : kAllBonds)
+    for (std::uint64_t seed = 1; seed < 4; ++seed) {
+      const WallToLay wall = random_wall(seed);
+      const Relief relief = relief_of(*lay(wall, usual_masonry(bond)), options_for(wall, usual_masonry(bond)), true);
+      for (const model::ElementMesh* mesh : {&relief.field[0], &relief.field[1], &relief.field[2], &relief.dressings})
+        for (const model::ElementFace& f : mesh->faces)
+          for (std::uint32_t i = 1; i + 1 < f.count; ++i) {
+            const auto at = [&](std::uint32_t k) { return mesh->vertices[mesh->indices[f.first + k]]; };
+            const auto a = at(0), b = at(i), c = at(i + 1);
+            const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z, vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
+            const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+            EXPECT_GT(std::sqrt(nx * nx + ny * ny + nz * nz), 0) << kBondNames[static_cast<int>(bond)] << " " << seed;
+          }
+    }
+}
+
 TEST(Relief, FallsBackToFrontsThenToDressingsThenToNothing) {
   const WallToLay wall = front_wall();
   const LaidWall laid = *lay(wall, usual_masonry(Bond::stretcher));
