@@ -60,7 +60,7 @@ settings::CommandText publish_text() {
   return {
       .name = "publish",
       .summary = "sends a build to buckets, web roots, archives and databases",
-      .usage = "SOURCE (--command COMMAND | --web-root FOLDER | --archive FILE.3tz | --postgis PG:...) [options]",
+      .usage = "SOURCE [--command C] [--web-root DIR] [--archive FILE] [--postgis PG:...]",
       .description =
           "Sends what differs from what was sent last, in an order in which no reader is led to a missing file: "
           "contents, "

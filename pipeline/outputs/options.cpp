@@ -12,7 +12,6 @@ using base::choice;
 using base::custom;
 using base::flag;
 using base::integer;
-using base::number;
 using base::OptionRecord;
 using base::OptionType;
 using base::RecordValue;
@@ -127,17 +126,17 @@ base::OptionTable<O> which_files() {
 
 base::Option<O> ground_pixel_option() {
   base::Option<O> option =
-      number<O>({.name = "ground-pixel",
-                 .key = "ground_pixel",
-                 .argument = "METRES",
-                 .minimum = 0.05,
-                 .maximum = 5,
-                 .help = "size of the pixels of --ground imagery; never finer than the finest image, nor "
-                         "more than 4096 along a side of a tile's picture",
-                 .record = OptionRecord::yes},
-                &O::ground_pixel);
+      base::number<O>({.name = "ground-pixel",
+                       .key = "ground_pixel",
+                       .argument = "METRES",
+                       .minimum = 0.05,
+                       .maximum = 5,
+                       .help = "size of the pixels of --ground imagery; never finer than the finest image, nor "
+                               "more than 4096 along a side of a tile's picture",
+                       .record = OptionRecord::yes},
+                      &O::ground_pixel);
   option.recorded = [recorded = option.recorded](const O& o) {
-    return o.ground == GroundChoice::none ? std::nullopt : recorded(o);
+    return o.ground_pixel == O().ground_pixel ? std::nullopt : recorded(o);
   };
   return option;
 }
