@@ -4,21 +4,15 @@
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <limits>
-#include <memory>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 #include <tuple>
 
 #include "pipeline/base/deflate.h"
 #include "pipeline/base/error.h"
-#include "pipeline/base/sha256.h"
-#include "pipeline/outward/target.h"
+#include "pipeline/outward/part_file.h"
 
 namespace blockrand::outward {
 namespace {
@@ -37,19 +31,10 @@ std::uint64_t little_endian(const std::uint8_t* bytes) {
   return value;
 }
 
-std::string whole_file(const std::string& build, const BuildFile& file) {
-  check_there(build, file);
-  const std::string place = build + "/" + file.path;
+void refuse_large(const std::string& build, const BuildFile& file) {
   if (file.bytes >= kMost32)
-    throw base::InputError(place, "", "has 4 GB or more, which a 3D Tiles archive cannot hold",
+    throw base::InputError(build + "/" + file.path, "", "has 4 GB or more, which a 3D Tiles archive cannot hold",
                            "Build smaller tiles: max_glb_bytes");
-  std::ifstream in(place, std::ios::binary);
-  std::string bytes(file.bytes, '\0');
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!in || base::sha256_of(bytes) != file.sha256)
-    throw base::InputError(place, "", "is not the file that build.json names: the build is damaged",
-                           "'blockrand validate' tells what else is; build again");
-  return bytes;
 }
 
 /// tileset.json and all that it leads to.
@@ -70,40 +55,6 @@ std::set<std::string> reachable(const std::string& build, const std::map<std::st
   }
   return found;
 }
-
-/// A file beside its place, removed unless it took that.
-class PartFile {
- public:
-  explicit PartFile(const std::string& place) : place_(place), part_(place + ".part") {
-    file_.reset(std::fopen(part_.c_str(), "wbe"));
-    if (!file_) fail();
-  }
-  ~PartFile() {
-    file_.reset();
-    if (!done_) std::remove(part_.c_str());
-  }
-  PartFile(const PartFile&) = delete;
-  PartFile& operator=(const PartFile&) = delete;
-  void append(std::string_view bytes) {
-    if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail();
-  }
-  void publish() {
-    if (std::fclose(file_.release()) != 0 || std::rename(part_.c_str(), place_.c_str()) != 0) fail();
-    done_ = true;
-  }
-
- private:
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  [[noreturn]] void fail() const {
-    throw base::OutputError(place_ + ": cannot be written: " + std::strerror(errno) +
-                            ". Check the disk and the folder's permissions");
-  }
-  std::string place_, part_;
-  std::unique_ptr<std::FILE, Close> file_;
-  bool done_ = false;
-};
 
 }  // namespace
 
@@ -224,6 +175,7 @@ ArchiveSummary write_archive(const std::string& build, const std::map<std::strin
   ZipWriter zip([&file](std::string_view bytes) { file.append(bytes); });
   std::vector<ArchiveEntry> entries;
   for (const std::string& name : names) {
+    refuse_large(build, files.at(name));
     const std::string bytes = whole_file(build, files.at(name));
     const bool text = name.ends_with(".json");
     entries.push_back({archive_hash(name), zip.add(name, bytes, text)});
@@ -232,7 +184,7 @@ ArchiveSummary write_archive(const std::string& build, const std::map<std::strin
   const std::uint64_t count = entries.size();
   zip.add(kIndexName, archive_index(std::move(entries)), false);
   zip.close();
-  file.publish();
+  file.publish_on_disk();
   return {count, zip.size()};
 }
 

@@ -38,6 +38,72 @@ struct WorkFolder {
   std::string path;
 };
 
+/// A descriptor that is closed at the end.
+struct OpenFile {
+  explicit OpenFile(int d) : descriptor(d) {}
+  ~OpenFile() {
+    if (descriptor >= 0) ::close(descriptor);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  int descriptor;
+};
+
+/// While it lives processes that end can be waited for, though the caller's environment ignores SIGCHLD.
+struct WaitedFor {
+  WaitedFor() {
+    struct sigaction normal {};
+    normal.sa_handler = SIG_DFL;
+    ::sigaction(SIGCHLD, &normal, &before);
+  }
+  ~WaitedFor() { ::sigaction(SIGCHLD, &before, nullptr); }
+  WaitedFor(const WaitedFor&) = delete;
+  WaitedFor& operator=(const WaitedFor&) = delete;
+  struct sigaction before {};
+};
+
+/// Whether a person at a terminal has this program before them: it may ask for passwords there, and Ctrl-C reaches all that it started.
+bool has_terminal() {
+  const OpenFile terminal(::open("/dev/tty", O_RDWR | O_NOCTTY | O_CLOEXEC));
+  return terminal.descriptor >= 0 && ::tcgetpgrp(terminal.descriptor) == ::getpgrp();
+}
+
+/// \returns  as waitpid has it; -1, with errno, where nobody knows
+int status_of(pid_t child) {
+  int status = 0;
+  pid_t ended = -1;
+  while ((ended = ::waitpid(child, &status, 0)) < 0 && errno == EINTR) {
+  }
+  return ended == child ? status : -1;
+}
+
+extern "C" void end_own_group(int) {
+  ::signal(SIGTERM, SIG_IGN);  // this one stays to wait for its shell
+  ::kill(0, SIGTERM);
+}
+
+/// In the child: becomes a process group with the shell in it, which gets SIGTERM as a whole when the program ends, however it does.
+/// \returns  in the shell's process alone
+void begin_group() {
+  sigset_t end;
+  ::sigemptyset(&end);
+  ::sigaddset(&end, SIGTERM);
+  if (::setpgid(0, 0) != 0) return;         // the caller's group is not this one's to end
+  ::sigprocmask(SIG_BLOCK, &end, nullptr);  // until the shell is in the group
+  ::signal(SIGTERM, end_own_group);
+  const pid_t shell = ::fork();
+  if (shell == 0) ::signal(SIGTERM, SIG_DFL);
+  ::sigprocmask(SIG_UNBLOCK, &end, nullptr);
+  if (shell == 0) return;
+  const int status = shell < 0 ? -1 : status_of(shell);
+  if (status >= 0 && WIFSIGNALED(status)) {
+    ::signal(WTERMSIG(status), SIG_DFL);
+    ::kill(::getpid(), WTERMSIG(status));
+  }
+  constexpr int kUnknown = 127;
+  ::_exit(status >= 0 && WIFEXITED(status) ? WEXITSTATUS(status) : kUnknown);
+}
+
 /// What a command is told by its environment.
 struct Task {
   std::string action, step, source;
@@ -117,35 +183,44 @@ class Caller {
                     task.action, paths.size(), task.number, task.of));
   }
 
-  /// Its process ends with this one. \returns  as waitpid has it
+  /// Without a terminal the command and all that it starts are one process group, which ends with this program; at a terminal its shell
+  /// ends with this program.
+  /// \returns  as waitpid has it
   int run_shell(std::vector<std::string>& environment, const std::string& input) const {
     std::vector<char*> pointers;
     for (std::string& e : environment) pointers.push_back(e.data());
     pointers.push_back(nullptr);
     std::string shell = "/bin/sh", dash = "-c", command = command_;
     char* const arguments[] = {shell.data(), dash.data(), command.data(), nullptr};
-    const int list = ::open(input.c_str(), O_RDONLY | O_CLOEXEC);
-    const pid_t parent = ::getpid(), child = list < 0 ? -1 : ::fork();
+    const OpenFile list(::open(input.c_str(), O_RDONLY | O_CLOEXEC));
+    const WaitedFor waited;
+    const bool terminal = has_terminal();
+    const pid_t parent = ::getpid(), child = list.descriptor < 0 ? -1 : ::fork();
     if (child < 0)
       throw base::OutputError(std::string("the command that publishes could not be run: ") + std::strerror(errno));
-    if (child == 0) {
-      ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-      if (::getppid() != parent) ::_exit(127);
-      // The thread that waits for signals is not here.
-      sigset_t none;
-      ::sigemptyset(&none);
-      for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ}) ::signal(number, SIG_DFL);
-      ::sigprocmask(SIG_SETMASK, &none, nullptr);
-      ::dup2(list, STDIN_FILENO);
-      ::dup2(STDERR_FILENO, STDOUT_FILENO);  // what this program prints may be read by others
-      ::execve("/bin/sh", arguments, pointers.data());
-      ::_exit(127);
-    }
-    ::close(list);
-    int status = 0;
-    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
+    if (child == 0) become_shell(parent, terminal, list.descriptor, arguments, pointers.data());
+    const int status = status_of(child);
+    if (status < 0)
+      throw base::OutputError(std::string("nobody knows how the command that publishes ended: ") +
+                              std::strerror(errno) + ". Publish again, and it goes on with this call");
     return status;
+  }
+
+  [[noreturn]] static void become_shell(pid_t parent, bool terminal, int input, char* const* arguments,
+                                        char* const* environment) {
+    // The thread that waits for signals is not here.
+    sigset_t none;
+    ::sigemptyset(&none);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ}) ::signal(number, SIG_DFL);
+    ::sigprocmask(SIG_SETMASK, &none, nullptr);
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    constexpr int kNotRun = 127;  // as shells have it
+    if (::getppid() != parent) ::_exit(kNotRun);
+    if (!terminal) begin_group();
+    ::dup2(input, STDIN_FILENO);
+    ::dup2(STDERR_FILENO, STDOUT_FILENO);  // what this program prints may be read by others
+    ::execve(arguments[0], arguments, environment);
+    ::_exit(kNotRun);
   }
 
   std::string build_, command_, name_;

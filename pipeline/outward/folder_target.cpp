@@ -10,52 +10,13 @@
 
 #include "pipeline/base/error.h"
 #include "pipeline/base/sha256.h"
+#include "pipeline/outward/part_file.h"
 #include "pipeline/outward/target.h"
 
 namespace blockrand::outward {
 namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void cannot_put(const std::string& path, int error) {
-  throw base::OutputError(path + ": cannot be written: " + std::strerror(error) +
-                          (error == ENOSPC || error == EDQUOT
-                               ? ". Make room there, and publish again: it goes on there"
-                               : ". Check the web root's permissions, and publish again"));
-}
-
-/// A file that is closed at the end, and removed unless it was renamed.
-struct Part {
-  explicit Part(const std::string& place) : path(place + ".blockrand-part") {
-    descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-    if (descriptor < 0) cannot_put(path, errno);
-  }
-  ~Part() {
-    if (descriptor >= 0) ::close(descriptor);
-    if (!done) ::unlink(path.c_str());
-  }
-  Part(const Part&) = delete;
-  Part& operator=(const Part&) = delete;
-
-  void write(std::string_view bytes) {
-    while (!bytes.empty()) {
-      const ssize_t n = ::write(descriptor, bytes.data(), bytes.size());
-      if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) cannot_put(path, errno);
-      bytes.remove_prefix(static_cast<std::size_t>(n));
-    }
-  }
-  void become(const std::string& place) {
-    const int closed = ::close(descriptor);
-    descriptor = -1;
-    if (closed != 0 || ::rename(path.c_str(), place.c_str()) != 0) cannot_put(place, errno);
-    done = true;
-  }
-
-  std::string path;
-  int descriptor = -1;
-  bool done = false;
-};
 
 void make_parent(const std::string& place) {
   std::error_code error;
@@ -67,17 +28,15 @@ void copy_file(const std::string& from, const std::string& to, const BuildFile& 
   make_parent(to);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(from.c_str(), "rbe"), &std::fclose);
   if (!in) check_there(from.substr(0, from.size() - file.path.size() - 1), file);
-  Part part(to);
+  PartFile part(to);
   base::Sha256 hash;
   std::array<char, 1 << 16> piece;
   for (std::size_t n = 0; in && (n = std::fread(piece.data(), 1, piece.size(), in.get())) > 0;) {
     hash.add({piece.data(), n});
-    part.write({piece.data(), n});
+    part.append({piece.data(), n});
   }
-  if (hash.finish() != file.sha256)
-    throw base::InputError(from, "", "is not the file that build.json names: the build is damaged",
-                           "Nothing of it was sent. 'blockrand validate' tells what else is; build again");
-  part.become(to);
+  if (hash.finish() != file.sha256) throw_damaged(from);
+  part.publish();
 }
 
 /// Folders that became empty, up to the root.
@@ -86,15 +45,13 @@ void remove_empty_parents(const std::string& root, const std::string& path) {
     if (::rmdir((root + "/" + folder.string()).c_str()) != 0) return;
 }
 
-void refuse_own_folders(const std::string& folder) {
-  std::error_code error;
-  for (fs::path at = fs::weakly_canonical(fs::absolute(folder)); at.has_relative_path(); at = at.parent_path())
-    if (fs::exists(at / "region.toml", error))
-      throw base::UsageError("--web-root " + folder + " lies in the region " + at.string() +
-                             ". Name a web root beside it.");
-  // A web root has the build.json of what was sent to it, but not run.json.
-  if (fs::exists(folder + "/run.json", error))
-    throw base::UsageError("--web-root " + folder + " is a build itself. Name a web root beside it.");
+/// What was written there, and its names, are on the disk when it returns: the state that says so is, too.
+void sync_file_system(const std::string& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) cannot_put(folder, errno);
+  const int synced = ::syncfs(descriptor), error = errno;
+  ::close(descriptor);
+  if (synced != 0) cannot_put(folder, error);
 }
 
 }  // namespace
@@ -112,7 +69,7 @@ void check_there(const std::string& build, const BuildFile& file) {
 }
 
 Target folder_target(const std::string& build, const std::string& folder) {
-  refuse_own_folders(folder);
+  refuse_own_folders("--web-root", folder);
   Target target;
   target.put = [build, folder](const Batch& batch, const MakeVariant& variant) {
     std::vector<std::string> variants;
@@ -121,11 +78,12 @@ Target folder_target(const std::string& build, const std::string& folder) {
       copy_file(build + "/" + file.path, place, file);
       const std::string bytes = variant ? variant(file) : std::string();
       if (bytes.empty()) continue;
-      Part part(place + ".gz");
-      part.write(bytes);
-      part.become(place + ".gz");
+      PartFile part(place + ".gz");
+      part.append(bytes);
+      part.publish();
       variants.push_back(file.path + ".gz");
     }
+    sync_file_system(folder);
     return variants;
   };
   target.remove = [folder](std::span<const std::string> paths, int, int) {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "pipeline/base/error.h"
-#include "pipeline/gdal/gdal_scope.h"
 #include "pipeline/outward/postgis_rows.h"
+#include "pipeline/outward/postgis_session.h"
 #include "pipeline/outward/target.h"
 #include "pipeline/run/region_state.h"
 
@@ -20,24 +20,10 @@ namespace blockrand::outward {
 namespace {
 
 using gdal::api;
-using gdal::GdalScope;
-using Dataset = std::unique_ptr<std::remove_pointer_t<GDALDatasetH>, gdal::CloseDataset>;
-using Rows = std::vector<std::vector<std::string>>;
 
 constexpr const char* kGeoPackage = "buildings.gpkg";
-constexpr const char* kStyles = "layer_styles";  // of QGIS, which keeps those of a database elsewhere
-
-std::string sql_name(std::string_view name) {
-  std::string out = "\"";
-  for (const char c : name) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
-}
-
-std::string sql_literal(std::string_view text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? "''" : std::string(1, c);
-  return out + "'";
-}
+constexpr const char* kTables = "blockrand_tables";  // the tables that this program made
+constexpr const char* kStyles = "layer_styles";      // of QGIS, which keeps those of a database elsewhere
 
 /// "areas/11/1093/805/buildings.gpkg" → "11/1093/805"
 std::string area_of(const std::string& path) {
@@ -53,16 +39,11 @@ bool same_type(OGRFieldDefnH a, OGRFieldDefnH b) {
          api().OGR_Fld_GetSubType(a) == api().OGR_Fld_GetSubType(b);
 }
 
-class Database {
+class Database : private PostgisSession {
  public:
   Database(const PostgisPlace& place, const PostgisBuild& build, const std::map<std::string, BuildFile>& files,
            base::Progress& progress)
-      : place_(place),
-        build_(build),
-        files_(files),
-        progress_(progress),
-        // Rows go in bulk, whatever the user's environment says; values as they are, whatever the locale.
-        scope_({{"PG_USE_COPY", "YES"}, {"OGR_TRUNCATE", "NO"}, {"PG_USE_BASE64", "NO"}}) {}
+      : PostgisSession(place), build_(build), files_(files), progress_(progress) {}
 
   PostgisSummary run() {
     std::vector<const BuildFile*> packages;
@@ -74,6 +55,9 @@ class Database {
     open();
     if (api().GDALDatasetStartTransaction(database_.get(), FALSE) != OGRERR_NONE) fail("a transaction cannot begin");
     make_notes();
+    if (build_.anew)
+      for (const std::string& name : tables_) load_anew(name);
+    complete_tables(packages);
     progress_.begin("database", packages.size(), "GeoPackages");
     std::uint64_t done = 0;
     for (const BuildFile* package : packages) {
@@ -88,52 +72,6 @@ class Database {
   }
 
  private:
-  std::string shown() const { return without_password(place_.connection); }
-
-  [[noreturn]] void fail(const std::string& what) const {
-    throw base::OutputError(
-        clean_of_passwords(fmt::format("{}: {}: {}. The database stays as it was; publish again when that is mended",
-                                       shown(), what, scope_.failure("GDAL does not say why")),
-                           place_.connection));
-  }
-
-  void open() {
-    gdal::register_drivers();
-    if (api().GDALGetDriverByName("PostgreSQL") == nullptr)
-      throw base::UsageError(
-          "--postgis: this GDAL was built without PostgreSQL. Install Debian's libgdal, or leave it out.");
-    constexpr const char* kDrivers[] = {"PostgreSQL", nullptr};
-    database_.reset(
-        api().GDALOpenEx(place_.connection.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE, kDrivers, nullptr, nullptr));
-    if (!database_) fail("cannot be opened");
-    if (select("SELECT extname FROM pg_extension WHERE extname = 'postgis'").empty())
-      throw base::UsageError(shown() + " has no PostGIS. Let its owner say: CREATE EXTENSION postgis;");
-  }
-
-  void sql(const std::string& statement) {
-    OGRLayerH result = api().GDALDatasetExecuteSQL(database_.get(), statement.c_str(), nullptr, nullptr);
-    if (result != nullptr) api().GDALDatasetReleaseResultSet(database_.get(), result);
-    if (scope_.failed()) fail(statement.substr(0, statement.find('(')));
-  }
-
-  /// Rows as texts; NULL is empty.
-  Rows select(const std::string& statement) {
-    Rows rows;
-    OGRLayerH result = api().GDALDatasetExecuteSQL(database_.get(), statement.c_str(), nullptr, nullptr);
-    if (scope_.failed()) fail(statement);
-    if (result == nullptr) return rows;
-    const int columns = api().OGR_FD_GetFieldCount(api().OGR_L_GetLayerDefn(result));
-    while (const FeaturePointer row{api().OGR_L_GetNextFeature(result)}) {
-      std::vector<std::string>& values = rows.emplace_back();
-      for (int i = 0; i < columns; ++i) values.emplace_back(api().OGR_F_GetFieldAsString(row.get(), i));
-    }
-    api().GDALDatasetReleaseResultSet(database_.get(), result);
-    if (scope_.failed()) fail(statement);
-    return rows;
-  }
-
-  std::string table(const std::string& name) const { return sql_name(place_.schema) + "." + sql_name(name); }
-
   std::string crs() const {
     return record_.contains("crs") && record_["crs"].is_object() ? run::text_in(record_["crs"], "code") : std::string();
   }
@@ -147,42 +85,109 @@ class Database {
     sql("CREATE TABLE IF NOT EXISTS " + table("blockrand_files") +
         " (path text PRIMARY KEY, sha256 text NOT NULL, layers text NOT NULL)");
     sql("LOCK TABLE " + table("blockrand_build") + " IN EXCLUSIVE MODE");  // readers go on; a second writer waits
-    for (const auto& row :
-         select("SELECT table_name FROM information_schema.columns WHERE column_name = 'blockrand_row' AND "
-                "table_schema = " +
-                sql_literal(place_.schema)))
-      tables_.insert(row[0]);
     for (const auto& row : select("SELECT path, sha256, layers FROM " + table("blockrand_files")))
       loaded_[row[0]] = {row[1], row[2]};
-    for (const auto& row : select("SELECT crs, name FROM " + table("blockrand_build")))
-      if (row[0] != crs() && !tables_.empty())
+    find_tables();
+    refuse_other_build();
+  }
+
+  /// The tables that this program made and nobody made into something else: a view shows rows of tables that are not its own.
+  void find_tables() {
+    const std::string list = table(kTables);
+    if (!has_relation(kTables)) {
+      // Made by a program that had no list.
+      sql("CREATE TABLE " + list + " (name text PRIMARY KEY)");
+      for (const auto& [path, file] : loaded_)
+        for (const std::string& name : layers_of(file.second)) list_table(name);
+    }
+    for (const auto& row :
+         select(fmt::format("SELECT c.relname FROM pg_class c JOIN pg_namespace n ON n.oid = c.relnamespace JOIN {} t "
+                            "ON t.name = c.relname "
+                            "WHERE n.nspname = {} AND c.relkind IN ('r', 'p') AND (SELECT count(*) FROM pg_attribute a "
+                            "WHERE a.attrelid = "
+                            "c.oid AND NOT a.attisdropped AND a.attname IN ({}, {})) = 2",
+                            list, sql_literal(place_.schema), sql_literal(kAreaColumn), sql_literal(kRowColumn))))
+      tables_.insert(row[0]);
+  }
+
+  void list_table(const std::string& name) {
+    sql("INSERT INTO " + table(kTables) + " VALUES (" + sql_literal(name) + ") ON CONFLICT DO NOTHING");
+  }
+
+  /// Rows of a schema are of one region: what another one's build does not have would be removed.
+  void refuse_other_build() {
+    if (tables_.empty()) return;
+    for (const auto& row : select("SELECT crs, name FROM " + table("blockrand_build"))) {
+      const std::string remove = "remove it: DROP SCHEMA " + sql_name(place_.schema) + " CASCADE;";
+      if (row[1] != build_.name)
+        throw base::UsageError(fmt::format(
+            "{}: schema {} holds {}, and this is {}, which would replace it. Name another schema (--schema), "
+            "or {} or, if {} has only a new name: UPDATE {} SET name = {};",
+            shown(), place_.schema, row[1], build_.name, remove, row[1], table("blockrand_build"),
+            sql_literal(build_.name)));
+      if (row[0] != crs())
         throw base::UsageError(
-            fmt::format("{}: schema {} holds {} in {}, and this build is in {}. Name another one (--schema), or remove "
-                        "it: DROP SCHEMA {} CASCADE;",
-                        shown(), place_.schema, row[1], row[0], crs(), sql_name(place_.schema)));
+            fmt::format("{}: schema {} holds {} in {}, and this build is in {}. Name another schema (--schema), or {}",
+                        shown(), place_.schema, row[1], row[0], crs(), remove));
+    }
+  }
+
+  static std::vector<std::string> layers_of(const std::string& list) {
+    std::vector<std::string> layers;
+    for (std::size_t at = 0; at < list.size();) {
+      const std::size_t end = std::min(list.find(' ', at), list.size());
+      layers.push_back(list.substr(at, end - at));
+      at = end + 1;
+    }
+    return layers;
   }
 
   bool is_loaded(const BuildFile& package) const {
     const auto found = loaded_.find(package.path);
     if (found == loaded_.end() || found->second.first != package.sha256) return false;
-    const std::string layers = found->second.second + " ";
-    for (std::size_t at = 0; at + 1 < layers.size();) {
-      const std::size_t end = layers.find(' ', at);
-      if (!tables_.contains(layers.substr(at, end - at))) return false;  // somebody removed it
-      at = end + 1;
+    // A table may have been removed, or emptied to be loaded anew.
+    return std::ranges::all_of(layers_of(found->second.second), [&](const std::string& name) {
+      return tables_.contains(name) && !anew_.contains(name);
+    });
+  }
+
+  /// All rows go, and all packages that have some are read.
+  void load_anew(const std::string& name) {
+    if (anew_.insert(name).second) remove_rows(name, "true");
+  }
+
+  Dataset open_package(const BuildFile& package) {
+    check_there(build_.folder, package);
+    const std::string place = build_.folder + "/" + package.path;
+    constexpr const char* kDrivers[] = {"GPKG", nullptr};
+    Dataset file(api().GDALOpenEx(place.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, nullptr, nullptr));
+    if (!file)
+      throw base::InputError(place, "", "cannot be read: " + scope_.failure("GDAL does not say why"), "Build again");
+    return file;
+  }
+
+  /// Adds columns that tables have not, or not any more. It comes before all packages, for rows of each one have values for them.
+  void complete_tables(const std::vector<const BuildFile*>& packages) {
+    std::set<std::string> complete;
+    for (const BuildFile* package : packages) {
+      const bool loaded = is_loaded(*package);
+      if (loaded && std::ranges::all_of(layers_of(loaded_.at(package->path).second),
+                                        [&](const std::string& name) { return complete.contains(name); }))
+        continue;
+      const Dataset file = open_package(*package);
+      for (int i = 0; i < api().GDALDatasetGetLayerCount(file.get()); ++i) {
+        OGRLayerH layer = api().GDALDatasetGetLayer(file.get(), i);
+        const std::string name = api().OGR_L_GetName(layer);
+        if (tables_.contains(name)) table_for(file.get(), layer, name);
+        complete.insert(name);
+      }
     }
-    return true;
   }
 
   void load(const BuildFile& package) {
     if (is_loaded(package)) return void(++summary_.unchanged);
-    check_there(build_.folder, package);
     ++summary_.read;
-    const std::string place = build_.folder + "/" + package.path;
-    constexpr const char* kDrivers[] = {"GPKG", nullptr};
-    const Dataset file(api().GDALOpenEx(place.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, nullptr, nullptr));
-    if (!file)
-      throw base::InputError(place, "", "cannot be read: " + scope_.failure("GDAL does not say why"), "Build again");
+    const Dataset file = open_package(package);
     std::set<std::string> layers;
     std::string list;
     for (int i = 0; i < api().GDALDatasetGetLayerCount(file.get()); ++i) {
@@ -220,7 +225,8 @@ class Database {
     if (api().OGR_L_SyncToDisk(to) != OGRERR_NONE || scope_.failed()) fail("table " + name + " cannot be made");
     sql(fmt::format("CREATE INDEX ON {} ({}, {})", table(name), kAreaColumn, sql_name(key_of(from))));
     describe(file, name, {});
-    tables_.insert(name);
+    list_table(name);
+    tables_.insert(name), anew_.insert(name);
     ++summary_.tables_made;
     return to;
   }
@@ -258,9 +264,7 @@ class Database {
   /// The table of a layer, with all of its columns.
   OGRLayerH table_for(GDALDatasetH file, OGRLayerH from, const std::string& name) {
     if (!tables_.contains(name)) {
-      if (!select("SELECT 1 FROM pg_class c JOIN pg_namespace n ON n.oid = c.relnamespace WHERE n.nspname = " +
-                  sql_literal(place_.schema) + " AND c.relname = " + sql_literal(name))
-               .empty())
+      if (has_relation(name))
         throw base::UsageError(
             fmt::format("{}: {} is there already, and this program did not make it. Name another schema: --schema",
                         shown(), table(name)));
@@ -286,7 +290,10 @@ class Database {
                         shown(), column, table(name), table(name)));
       }
     }
-    if (!fresh.empty()) describe(file, name, fresh);
+    if (!fresh.empty()) {
+      describe(file, name, fresh);
+      load_anew(name);
+    }
     for (int i = 0; i < api().OGR_FD_GetFieldCount(has); ++i)
       if (const std::string column = api().OGR_Fld_GetNameRef(api().OGR_FD_GetFieldDefn(has, i));
           !known.contains(column))
@@ -369,15 +376,13 @@ class Database {
                     sql_literal(crs())));
   }
 
-  const PostgisPlace& place_;
   const PostgisBuild& build_;
   const std::map<std::string, BuildFile>& files_;
   base::Progress& progress_;
-  GdalScope scope_;
-  Dataset database_;
   nlohmann::ordered_json record_;
   std::set<std::string> tables_;                                       ///< of this program's rows
   std::map<std::string, std::pair<std::string, std::string>> loaded_;  ///< path → hash, layers
+  std::set<std::string> anew_;                                         ///< tables whose rows are all written
   std::set<std::string> warned_;
   PostgisSummary summary_;
 };

@@ -19,6 +19,7 @@ struct PostgisPlace {
 struct PostgisBuild {
   std::string folder, name;
   std::optional<int> number;
+  bool anew = false;  ///< write all rows, whatever is noted of them
 };
 
 struct PostgisSummary {
@@ -41,8 +42,10 @@ void refuse_password_in(const std::string& settings_file, const std::string& con
 /// (a hash of the row). Rows of a layer belong together by the area and the layer's key, `id`, or `osm_id` where it has none: where the hashes of
 /// a key's rows are not those of the build, all rows of that key are deleted and written. A GeoPackage whose hash is that which was written last
 /// is not read. A table that is missing is made, with spatial and key index and the columns' meanings; a column that is missing is
-/// added, and the layer's rows are then written anew. `blockrand_build` has one row, the build that is in; `blockrand_files` its GeoPackages.
-/// \throws base::UsageError   no GeoPackage in the build; no PostGIS; a table of that name that this program did not make; another CRS
+/// added, and all rows of the table are then written anew. `blockrand_build` has one row, the build that is in; `blockrand_files` its
+/// GeoPackages; `blockrand_tables` the tables that were made: none but those is written.
+/// \throws base::UsageError   no GeoPackage in the build; no PostGIS; a table or view of that name that this program did not make; a build
+///                            of another name, or in another CRS, lies there
 /// \throws base::OutputError  the database cannot be reached or written: it stays as it was
 PostgisSummary publish_to_postgis(const PostgisPlace& place, const PostgisBuild& build,
                                   const std::map<std::string, BuildFile>& files, bool dry_run,

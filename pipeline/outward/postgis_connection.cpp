@@ -46,7 +46,8 @@ std::vector<Span> passwords_in(const std::string& connection) {
       if (const Span value = value_at(connection, equals + 1); value.size > 0) out.push_back(value);
   }
   if (const std::size_t scheme = connection.find("://"); scheme != std::string::npos) {
-    const std::size_t begin = scheme + 3, end = std::min(connection.find_first_of("/?", begin), connection.size());
+    // libpq looks for '@' up to the first '/': a '?' before it belongs to the password.
+    const std::size_t begin = scheme + 3, end = std::min(connection.find('/', begin), connection.size());
     const std::size_t host = connection.rfind('@', end), colon = connection.find(':', begin);
     if (host != std::string::npos && host > begin && colon != std::string::npos && colon + 1 < host)
       out.push_back({colon + 1, host - colon - 1});

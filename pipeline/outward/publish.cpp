@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -15,6 +16,7 @@
 #include "pipeline/base/error.h"
 #include "pipeline/outward/archive.h"
 #include "pipeline/outward/build_files.h"
+#include "pipeline/outward/part_file.h"
 #include "pipeline/outward/postgis.h"
 #include "pipeline/outward/send.h"
 #include "pipeline/run/region_folder.h"
@@ -64,13 +66,10 @@ class Publisher {
       : options_(options), source_(source), dry_run_(dry_run), progress_(progress) {}
 
   PublishReport run() {
-    check_target_name(options_.target);
-    files_ = files_of_build(source_.build);
     if (!options_.command.empty()) part("command", options_.target, [this] { return by_command(); });
-    if (!options_.web_root.empty()) part("web-root", options_.web_root, [this] { return into_folder(); });
-    if (!options_.archive.empty()) part("archive", options_.archive, [this] { return into_archive(); });
-    if (!options_.postgis.empty())
-      part("postgis", without_password(options_.postgis), [this] { return into_database(); });
+    if (!options_.web_root.empty()) part("web-root", absolute(options_.web_root), [this] { return into_folder(); });
+    if (!options_.archive.empty()) part("archive", absolute(options_.archive), [this] { return into_archive(); });
+    if (!options_.postgis.empty()) part("postgis", database_name(), [this] { return into_database(); });
     return std::move(report_);
   }
 
@@ -78,12 +77,26 @@ class Publisher {
   void part(const char* what, const std::string& place, const std::function<Figures()>& work) {
     PublishedPart part{.what = what, .place = place, .figures = {}, .failure = {}};
     try {
+      read_build();
       part.figures = work();
     } catch (const std::exception& error) {
       part.failure = error.what();
       if (!report_.first_failure) report_.first_failure = std::current_exception();
     }
     report_.parts.push_back(std::move(part));
+  }
+
+  /// What is wrong with it keeps all places from being brought to it, and is noted of each.
+  void read_build() {
+    check_target_name(options_.target);
+    if (files_.empty()) files_ = files_of_build(source_.build);
+  }
+
+  static std::string absolute(const std::string& place) { return fs::absolute(place).lexically_normal().string(); }
+
+  std::string database_name() const {
+    const std::string name = without_password(options_.postgis);
+    return options_.schema == PublishOptions().schema ? name : name + " schema " + options_.schema;
   }
 
   SendOptions send_options() const {
@@ -93,6 +106,7 @@ class Publisher {
   Figures send(const Target& target, TargetState& state) {
     if (options_.resend) state.forget();
     if (dry_run_) {
+      settle_variants(state, send_options());
       const SendPlan plan = look_ahead(files_, state, send_options(), unix_time());
       return {{"files to send", plan.files},
               {"bytes", plan.bytes},
@@ -127,13 +141,15 @@ class Publisher {
   }
 
   Figures into_archive() {
+    refuse_own_folders("--archive", options_.archive);
     if (dry_run_) return {};
     const ArchiveSummary s = write_archive(source_.build, files_, options_.archive, progress_);
     return {{"files", s.files}, {"bytes", s.bytes}};
   }
 
   Figures into_database() {
-    const PostgisBuild build{.folder = source_.build, .name = source_.name, .number = source_.number};
+    const PostgisBuild build{
+        .folder = source_.build, .name = source_.name, .number = source_.number, .anew = options_.resend};
     const PostgisSummary s =
         publish_to_postgis({options_.postgis, options_.schema}, build, files_, dry_run_, progress_);
     return {{"GeoPackages read", s.read},       {"GeoPackages unchanged", s.unchanged}, {"tables made", s.tables_made},
@@ -149,17 +165,28 @@ class Publisher {
   PublishReport report_;
 };
 
-void note_report(const PublishSource& source, const PublishReport& report) {
-  Json j = {{"ended", run::now_utc()}};
-  j["build"] = source.number ? Json(*source.number) : Json();
-  j["parts"] = Json::array();
-  for (const PublishedPart& part : report.parts) {
-    Json entry = {{"what", part.what}, {"place", part.place}};
-    entry["failure"] = part.failure.empty() ? Json() : Json(part.failure);
-    for (const auto& [what, count] : part.figures) entry["figures"][what] = count;
-    j["parts"].push_back(std::move(entry));
-  }
-  run::write_whole(source.notes + "/last.json", run::dumped(j, 1));
+Json part_note(const PublishSource& source, const PublishedPart& part) {
+  Json entry = {{"what", part.what}, {"place", part.place}, {"ended", run::now_utc()}};
+  entry["build"] = source.number ? Json(*source.number) : Json();
+  entry["failure"] = part.failure.empty() ? Json() : Json(part.failure);
+  for (const auto& [what, count] : part.figures) entry["figures"][what] = count;
+  return entry;
+}
+
+/// Places that were not meant this time keep what is noted of them, unless `all` are those that were.
+void note_report(const PublishSource& source, const PublishReport& report, bool all) {
+  const std::string path = source.notes + "/last.json";
+  const Json before = run::read_json(path);
+  Json parts = Json::array();
+  for (const PublishedPart& part : report.parts) parts.push_back(part_note(source, part));
+  if (!all && before.contains("parts") && before["parts"].is_array())
+    for (const Json& part : before["parts"]) {
+      const bool again = std::ranges::any_of(report.parts, [&](const PublishedPart& now) {
+        return now.what == run::text_in(part, "what") && now.place == run::text_in(part, "place");
+      });
+      if (!again) parts.push_back(part);
+    }
+  run::write_whole(path, run::dumped({{"parts", std::move(parts)}}, 1));
 }
 
 }  // namespace
@@ -186,11 +213,11 @@ PublishSource publish_source(const std::string& place) {
 }
 
 PublishReport publish(const PublishOptions& options, const PublishSource& source, bool dry_run,
-                      base::Progress& progress) {
+                      base::Progress& progress, bool all_places) {
   if (dry_run) return Publisher(options, source, dry_run, progress).run();
   const NotesLock lock(source.notes);
   PublishReport report = Publisher(options, source, dry_run, progress).run();
-  note_report(source, report);
+  note_report(source, report, all_places);
   return report;
 }
 
@@ -198,14 +225,14 @@ std::vector<std::string> outward_to_do(const std::string& region, std::optional<
   std::vector<std::string> out;
   const Json last = run::read_json(region + "/outward/last.json");
   if (!last.contains("parts") || !last["parts"].is_array()) return out;
-  const bool behind = last.contains("build") && current && last["build"] != *current;
   for (const Json& part : last["parts"]) {
+    if (!part.is_object()) continue;
     const std::string place = run::text_in(part, "what") + " " + run::text_in(part, "place");
     const std::string failure = run::text_in(part, "failure");
     if (!failure.empty())
       out.push_back(fmt::format("outward, to do: {}: {}", place, failure));
-    else if (behind)
-      out.push_back(fmt::format("outward, to do: {}: build {} is there", place, last["build"].dump()));
+    else if (current && part.contains("build") && part["build"] != *current)
+      out.push_back(fmt::format("outward, to do: {}: build {} is there", place, part["build"].dump()));
   }
   return out;
 }

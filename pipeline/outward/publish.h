@@ -39,12 +39,12 @@ struct PublishReport {
 };
 
 /// One place after the other; one that fails keeps none of the others back, and is taken up by the next call. How they went is noted in
-/// `notes`/last.json.
-/// \throws base::UsageError   another one works for this source; settings that make no sense
-/// \throws base::InputError   the build or the notes are damaged
+/// `notes`/last.json: of each place, by what it is and where; a damaged build is a failure of each.
+/// \param all_places  there are no other places: what is noted of such is forgotten
+/// \throws base::UsageError   another one works for this source
 /// \throws base::OutputError  the notes cannot be written
 PublishReport publish(const PublishOptions& options, const PublishSource& source, bool dry_run,
-                      base::Progress& progress);
+                      base::Progress& progress, bool all_places = false);
 
 /// What `blockrand status` tells: a line for each place where the published build is not; empty where nothing is to do, or was
 /// ever sent.

@@ -36,10 +36,7 @@ class Sender {
   }
 
   SendSummary send() {
-    const std::string variants = options_.gzip ? kGzip : "none";
-    // Without their variants files are not there as they should be.
-    if (options_.gzip && state_.note(kVariants) != variants) state_.forget();
-    state_.set_note(kVariants, variants);
+    settle_variants(state_, options_);
     settle_doubts();
     const SendPlan plan = look_ahead(files_, state_, options_, unix_time());
     summary_.unchanged = plan.unchanged;
@@ -88,16 +85,15 @@ class Sender {
     for (const BuildFile& file : batch.files) {
       touched.push_back(file.path);
       const std::string variant = file.path + ".gz";
-      const bool was = state_.here().contains(variant) || state_.in_doubt().contains(variant);
-      if (was) stale_.insert(variant);
       if (!has_variant(file)) continue;
       touched.push_back(variant);
+      // One that was there stays in doubt: it is removed at the end, of this run or of the next.
+      const bool was = state_.here().contains(variant) || state_.in_doubt().contains(variant);
       if (!was) without.insert(variant);
     }
     state_.begin(touched);
     for (const std::string& path : target_.put(batch, variant_)) {
-      state_.put(path, kGzip);
-      stale_.erase(path), without.erase(path);
+      state_.put(path, kGzip), without.erase(path);
       ++summary_.variants;
     }
     for (const std::string& path : without) state_.removed(path);
@@ -108,9 +104,7 @@ class Sender {
   }
 
   void remove(const SendPlan& plan) {
-    std::vector<std::string> paths = plan.remove;
-    for (const std::string& path : stale_)
-      if (std::ranges::find(paths, path) == paths.end()) paths.push_back(path);
+    const std::vector<std::string>& paths = plan.remove;
     const std::size_t calls = (paths.size() + most() - 1) / most();
     for (std::size_t i = 0; i < calls; ++i) {
       const auto some = std::span(paths).subspan(i * most(), std::min(most(), paths.size() - i * most()));
@@ -127,13 +121,18 @@ class Sender {
   const SendOptions& options_;
   base::Progress& progress_;
   MakeVariant variant_;
-  std::set<std::string> stale_;  ///< variants of files that have none any more: servers would hand them out
   SendSummary summary_;
 };
 
 }  // namespace
 
 std::int64_t unix_time() { return static_cast<std::int64_t>(std::time(nullptr)); }
+
+void settle_variants(TargetState& state, const SendOptions& options) {
+  const std::string variants = options.gzip ? kGzip : "none";
+  if (options.gzip && state.note(kVariants) != variants) state.forget();
+  state.set_note(kVariants, variants);
+}
 
 SendPlan look_ahead(const std::map<std::string, BuildFile>& files, const TargetState& state, const SendOptions& options,
                     std::int64_t now) {

@@ -31,6 +31,10 @@ struct SendSummary {
 SendSummary send_build(const std::string& build, const std::map<std::string, BuildFile>& files, const Target& target,
                        TargetState& state, const SendOptions& options, base::Progress& progress);
 
+/// Files that lie there without the variants that are asked for now are not there as they should be: nothing is known of them then.
+/// Part of send_build; before look_ahead it makes that tell the truth.
+void settle_variants(TargetState& state, const SendOptions& options);
+
 /// What it would do. \param now  seconds of Unix time
 SendPlan look_ahead(const std::map<std::string, BuildFile>& files, const TargetState& state, const SendOptions& options,
                     std::int64_t now);

@@ -31,9 +31,14 @@ SendPlan plan_to_send(const std::map<std::string, BuildFile>& files, const Targe
   for (const auto& [path, hash] : there.here()) known.insert(path);
   for (const std::string& path : known) {
     if (files.contains(path)) continue;
-    if (const std::string plain = plain_path(path); !plain.empty() && files.contains(plain)) {
-      // One that is still right is found again by whoever sends; here is only told that none may be.
-      if (!rules.variants) plan.remove.push_back(path);
+    if (const auto plain = files.find(plain_path(path)); plain != files.end()) {
+      // A variant comes with its file. One in doubt beside a file that came is of an earlier one, which had a variant.
+      const auto lies = there.here().find(plain->first);
+      const bool came = lies != there.here().end() && lies->second == plain->second.sha256;
+      if (!rules.variants || (came && there.in_doubt().contains(path)))
+        plan.remove.push_back(path);
+      else if (there.leaving().contains(path))
+        plan.stay.push_back(path);  // its file is named again
       continue;
     }
     const auto found = there.leaving().find(path);

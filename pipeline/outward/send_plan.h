@@ -40,7 +40,7 @@ std::string plain_path(const std::string& path);
 
 /// A file is sent when its hash is not that which lies there. What is there, or may be, and is not named by `files` leaves: it
 /// stays for `keep_deleted` and is then removed. Variants without their plain file go with it; those of a file that stays, but
-/// that has none any more, at once, since nobody leads to them.
+/// that has none any more, at once: servers would hand them out instead of it.
 SendPlan plan_to_send(const std::map<std::string, BuildFile>& files, const TargetState& there, const SendRules& rules);
 
 }  // namespace blockrand::outward

@@ -61,18 +61,20 @@ class Postgis(RegionTest):
         env = self.server.environment
         self.update(folder, map_.write(self.path('nights.osm')), env=env)
         self.assertLessEqual(LAYERS | {'blockrand_build', 'blockrand_files'}, self.tables('nights'))
-        kept = {r[0]: r[1] for r in self.server.sql('nights', 'SELECT id, fid FROM blockrand.buildings')}
         written = []
         for night in range(20):
             map_.random_edits(rng, rng.choice([1, 2, 8]))
+            before = self.fids('nights')
             self.update(folder, map_.write_changes(self.path(f'n{night}.osc')), env=env)
             figures = read_json(folder, 'outward', 'last.json')['parts'][0]['figures']
             written.append((figures['rows inserted'], figures['rows unchanged']))
         self.same_as_fresh(folder, 'nights')
         self.equals_the_geopackage('nights', os.path.join(self.current(folder), 'buildings.gpkg'))
         self.assertTrue(any(0 < inserted < unchanged for inserted, unchanged in written), f'rows that did not change are not written: {written}')
-        now = {r[0]: r[1] for r in self.server.sql('nights', 'SELECT id, fid FROM blockrand.buildings')}
-        self.assertGreater(sum(now.get(i) == f for i, f in kept.items()), len(kept) // 4, 'unchanged rows keep their fid')
+        now = self.fids('nights')
+        same = before.keys() & now.keys()
+        self.assertEqual({row: before[row] for row in same}, {row: now[row] for row in same}, 'unchanged rows keep their fid')
+        self.assertGreater(len(same), len(before) // 4)
         build = self.server.sql('nights', 'SELECT name, number, crs FROM blockrand.blockrand_build')
         self.assertEqual(build, [['nights', str(int(os.path.basename(self.current(folder)))), 'EPSG:25832']])
         # Nothing new: no file is read.
@@ -82,6 +84,10 @@ class Postgis(RegionTest):
         blockrand('rollback', folder)
         self.publish(folder, connection)
         self.same_as_fresh(folder, 'nights')
+
+    def fids(self, database):
+        """{(table, id, hash of the row): fid}"""
+        return {(table, *row[:2]): row[2] for table in LAYERS for row in self.server.sql(database, f'SELECT id, blockrand_row, fid FROM blockrand."{table}"')}
 
     def equals_the_geopackage(self, database, path):
         """Values and geometries of the table are those of the file."""
@@ -119,7 +125,14 @@ class Postgis(RegionTest):
         self.assertEqual({r[0] for r in self.server.sql('areas', 'SELECT DISTINCT blockrand_area FROM blockrand.buildings')}, areas)
         # The same at once: rows of areas go, and there are as many buildings.
         count = self.server.sql('areas', 'SELECT count(*), count(DISTINCT id) FROM blockrand.buildings')
+        # What somebody removed comes back in the rows of all areas, though no file changed.
+        self.server.sql('areas', 'DROP TABLE blockrand.parts; ALTER TABLE blockrand.buildings DROP COLUMN storeys')
+        figures = self.publish(build, connection)
+        self.assertEqual((figures['tables made'], figures['columns added'], figures['GeoPackages read']), (1, 1, len(areas)))
+        self.same_as_fresh(build, 'areas')
         whole = self.build(source, 'whole', '--formats', 'gpkg', '--no-report')
+        self.refused(self.publish(whole, connection, code=1), 1, 'holds areas, and this is whole', '--schema')
+        self.server.sql('areas', "UPDATE blockrand.blockrand_build SET name = 'whole'")  # as the message says
         self.publish(whole, connection)
         self.assertEqual(self.server.sql('areas', 'SELECT count(DISTINCT blockrand_area), max(length(blockrand_area)) FROM blockrand.buildings'), [['1', '0']])
         self.assertEqual(self.server.sql('areas', 'SELECT count(*), count(DISTINCT id) FROM blockrand.buildings'), count)
@@ -135,14 +148,21 @@ class Postgis(RegionTest):
         self.assertIn('Area of the footprint', sql("SELECT col_description('blockrand.buildings'::regclass, attnum) FROM pg_attribute WHERE "
                                                    "attrelid = 'blockrand.buildings'::regclass AND attname = 'footprint_area'")[0][0])
         self.assertEqual(sql('SELECT Find_SRID(\'blockrand\', \'buildings\', \'geom\')'), [['25832']])
-        # As if an older program had made the tables: a column less, another one more.
-        sql("ALTER TABLE blockrand.buildings DROP COLUMN footprint_area, ADD COLUMN old_one text; "
-            "UPDATE blockrand.buildings SET blockrand_row = 0; UPDATE blockrand.blockrand_files SET sha256 = 'x'")
+        # A column that somebody removed, or that an older program did not have: it comes back with its values.
+        sql('ALTER TABLE blockrand.buildings DROP COLUMN footprint_area')
+        self.assertEqual(self.publish(build, connection)['columns added'], 1)
+        self.same_as_fresh(build, 'drift')
+        # Another one more.
+        sql('ALTER TABLE blockrand.buildings ADD COLUMN old_one text')
         run = blockrand('publish', build, '--postgis', connection, env=self.server.environment)
         self.assertEqual(run.code, 0, run)
-        self.assertIn('1 columns added', run.out)
         self.assertIn('no column old_one any more', run.err)
         sql('ALTER TABLE blockrand.buildings DROP COLUMN old_one')
+        self.same_as_fresh(build, 'drift')
+        # Values that somebody changed: all rows are written anew where that is asked for.
+        sql("UPDATE blockrand.buildings SET storeys = 77; DELETE FROM blockrand.tiles")
+        self.assertEqual(self.publish(build, connection)['rows inserted'], 0)
+        self.assertGreater(self.publish(build, connection, '--resend')['rows inserted'], 0)
         self.same_as_fresh(build, 'drift')
         # A table that was removed is made and loaded, though its file did not change.
         sql('DROP TABLE blockrand.parts')
@@ -161,12 +181,57 @@ class Postgis(RegionTest):
         self.assertEqual(self.rows('drift', 'buildings', 'Other one'), self.rows('drift', 'buildings'))
         # Another reference system.
         other = self.build(SAMPLE, 'drift_crs', '--formats', 'gpkg', '--no-report', '--crs', 'EPSG:25833')
+        self.refused(self.publish(other, connection, '--schema', 'Other one', code=1), 1, 'holds drift, and this is drift_crs')
+        sql('UPDATE "Other one".blockrand_build SET name = \'drift_crs\'')
         self.refused(self.publish(other, connection, '--schema', 'Other one', code=1), 1, 'EPSG:25832', 'EPSG:25833')
+
+    def test_what_others_made_stays(self):
+        """Views and copies of the tables in their schema have the columns by which this program knows its rows."""
+        build = self.build(SAMPLE, 'views', '--formats', 'gpkg', '--no-report')
+        connection, sql = self.server.database('views'), lambda text: self.server.sql('views', text)
+        self.publish(build, connection)
+        before = {t: self.rows('views', t) for t in ('buildings', 'parts')}
+        sql('CREATE VIEW blockrand.tall AS SELECT * FROM blockrand.buildings WHERE storeys >= 0; '
+            'CREATE VIEW blockrand.joined AS SELECT b.id, b.blockrand_area, p.blockrand_row FROM blockrand.buildings b, blockrand.parts p; '
+            'CREATE MATERIALIZED VIEW blockrand.kept AS TABLE blockrand.buildings; '
+            'CREATE TABLE blockrand.copied AS TABLE blockrand.buildings')
+        shown = {t: self.rows('views', t) for t in ('tall', 'joined', 'copied')}
+        self.assertTrue(all(rows for _, rows in shown.values()))
+        for again in ("UPDATE blockrand.blockrand_files SET sha256 = 'x'",
+                      # An area that the build does not have any more.
+                      "INSERT INTO blockrand.blockrand_files VALUES ('areas/1/2/3/buildings.gpkg', 'x', 'buildings')",
+                      # A database of a program that had no list of its tables.
+                      "DROP TABLE blockrand.blockrand_tables; UPDATE blockrand.blockrand_files SET sha256 = 'x'"):
+            sql(again)
+            self.publish(build, connection)
+            self.assertEqual({t: self.rows('views', t) for t in before}, before, again)
+            self.assertEqual({t: self.rows('views', t) for t in shown}, shown, again)
+        self.publish(build, connection, '--resend')
+        self.assertEqual({t: self.rows('views', t) for t in shown}, shown)
+        # A view in the place of a table.
+        sql('DROP VIEW blockrand.joined; DROP TABLE blockrand.parts; CREATE VIEW blockrand.parts AS TABLE blockrand.copied')
+        self.refused(self.publish(build, connection, code=1), 1, 'parts', 'is there already, and this program did not make it')
+        self.assertEqual(self.rows('views', 'copied'), shown['copied'])
+
+    def test_a_second_region_takes_no_rows_of_the_first(self):
+        connection = self.server.database('two')
+        regions = [self.region(name, LIMITS_OFF + f'[build]\nformats = "gpkg"\nreport = false\n[publish]\npostgis = "{connection}"\n')
+                   for name in ('first', 'second')]
+        source = Map(read_xml(SAMPLE)).write(self.path('two.osm'))
+        self.update(regions[0], source, env=self.server.environment)
+        before = self.rows('two', 'buildings')
+        run = self.update(regions[1], source, code=6, env=self.server.environment)
+        self.assertIn('holds first, and this is second', run.err)
+        self.assertIn('--schema', run.err)
+        self.assertEqual(self.rows('two', 'buildings'), before)
+        self.publish(regions[1], connection, '--schema', 'second')
+        self.assertEqual(self.rows('two', 'buildings', 'second'), before)
 
     def test_what_fails_changes_nothing(self):
         build = self.build(SAMPLE, 'fails', '--formats', 'gpkg', '--no-report')
         connection = self.server.database('fails')
         self.publish(build, connection)
+        self.server.sql('fails', "UPDATE blockrand.blockrand_build SET name = 'fails_other'")
         before = {t: self.rows('fails', t) for t in self.tables('fails')}
         # A rule of the database that the rows of another build break, far into the load.
         self.server.sql('fails', "ALTER TABLE blockrand.tiles ADD CONSTRAINT few CHECK (buildings < 0) NOT VALID")
@@ -182,6 +247,7 @@ class Postgis(RegionTest):
         wrong = connection + ' password=hush-hush-wrong'
         run = self.publish(build, wrong, code=4, env={})
         self.assertIn('password=***', run.err)
+        self.server.sql('fails', "UPDATE blockrand.blockrand_build SET name = 'fails'")
         self.publish(build, connection + " password='hush-hush'", env={})
         self.assertNotIn('hush', json.dumps(read_json(build + '.outward', 'last.json')))
 

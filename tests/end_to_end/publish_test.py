@@ -5,7 +5,10 @@ import json
 import os
 import random
 import shutil
+import signal
 import struct
+import subprocess
+import time
 import unittest
 import zipfile
 
@@ -19,10 +22,13 @@ TILES = '[build]\nformats = "gltf,gpkg"\nreport = false\n'
 # A command as docs/publishing.md has it: copies, or removes, what the list names; notes how it was called.
 COPY = '''
 echo "$BLOCKRAND_ACTION $BLOCKRAND_STEP $BLOCKRAND_CALL/$BLOCKRAND_CALLS" >> "{log}"
-test -e "{fail}" && exit 7
+test -e "{fail}" && test ! -s "{fail}" && exit 7
 mkdir -p "{to}"
 cmp -s "$BLOCKRAND_LIST" - || exit 8
 if [ "$BLOCKRAND_ACTION" = put ]; then
+  if test -s "{fail}" && test "$(cat "{fail}")" = "$BLOCKRAND_CALL"; then  # half of this call
+    cd "$BLOCKRAND_SOURCE" && cp -p --parents -t "{to}" "$(head -n 1 "$BLOCKRAND_LIST")"; exit 7
+  fi
   (cd "$BLOCKRAND_SOURCE" && xargs -0 cp -p --parents -t "{to}") < "$BLOCKRAND_LIST0"
 else
   (cd "{to}" && xargs -0 rm -f --) < "$BLOCKRAND_LIST0"
@@ -150,20 +156,102 @@ class Outward(RegionTest):
         shutil.rmtree(to)
         self.assertIn('up to date', self.update(folder).out)
         self.lies_there(to, self.current(folder))
-        # Killed in the middle: the next one sends what is in doubt, and no more.
+        # Broken off in the middle: the next one sends what is in doubt and what was not reached, and no more.
+        before = named_by(self.current(folder))
         map_.random_edits(random.Random(4), 20)
-        with open(fail, 'w', encoding='utf-8'):
-            self.update(folder, map_.write_changes(self.path('breaks.osc')), code=6)
+        reached, failing = 4, 5
+        with open(fail, 'w', encoding='utf-8') as f:
+            f.write(str(failing))
+        os.remove(log + '.files')
+        run = self.update(folder, map_.write_changes(self.path('breaks.osc')), code=6)
+        self.assertIn(f'call {failing} of', run.err)
+        done = self.paths_put(log)
+        self.assertTrue(reached <= len(done) <= reached * 2, done)  # the last list of a step may be shorter
+        now = named_by(self.current(folder))
+        changed = {p for p, h in now.items() if before.get(p) != h}
+        self.assertLess(set(done), changed)
         os.remove(fail)
-        sent = self.publish(folder, '--log-format', 'json')
-        figures = json.loads(sent.out)['parts'][0]['figures']
-        self.assertGreater(figures['files unchanged'] + figures['files sent'], figures['files sent'])
+        os.remove(log + '.files')
+        self.publish(folder)
+        self.assertEqual(sorted(self.paths_put(log)), sorted(changed - set(done)))
         self.lies_there(to, self.current(folder))
         # Back to the build before: what differs is sent again.
         blockrand('rollback', folder)
         self.assertIn('to do', blockrand('status', folder).out)
         self.publish(folder)
         self.lies_there(to, self.current(folder))
+
+    def paths_put(self, log):
+        with open(log + '.files', encoding='utf-8') as f:
+            return [line.split()[1] for line in f if line.startswith('put ')]
+
+    def test_what_a_command_started_ends_with_the_program(self):
+        build = self.build(SAMPLE, 'ended', '--formats', 'gltf', '--no-report')
+        for number in (signal.SIGTERM, signal.SIGKILL):
+            noted = self.path(f'grandchild{number}')
+            run = subprocess.Popen([Setup.program, 'publish', build, '--progress', 'none', '--command',
+                                    f"sh -c 'echo $$ > {noted}.part; mv {noted}.part {noted}; sleep 300; true'; true"],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+            self.until(lambda noted=noted: os.path.exists(noted), 'the command runs')
+            with open(noted, encoding='utf-8') as f:
+                started = int(f.read())
+            self.until(lambda started=started: self.children(started), 'it has started another one')
+            processes = [started, *self.children(started)]
+            self.assertEqual(len(processes), 2)
+            run.send_signal(number)
+            run.wait()
+            self.until(lambda processes=processes: not any(map(self.runs, processes)), f'all of them end after signal {number}')
+
+    def until(self, what, words):
+        for _ in range(600):
+            if what():
+                return
+            time.sleep(0.1)
+        self.fail(words + ': not within a minute')
+
+    @staticmethod
+    def children(pid):
+        with open(f'/proc/{pid}/task/{pid}/children', encoding='utf-8') as f:
+            return [int(child) for child in f.read().split()]
+
+    @staticmethod
+    def runs(pid):
+        try:
+            with open(f'/proc/{pid}/stat', encoding='utf-8') as f:
+                return f.read().rsplit(')', 1)[1].split()[0] != 'Z'
+        except OSError:
+            return False
+
+    def test_a_command_that_fails_is_seen_whatever_is_inherited(self):
+        """A caller that ignores SIGCHLD hands that on, and the kernel then forgets how processes ended."""
+        build = self.build(SAMPLE, 'inherited', '--formats', 'gltf', '--no-report')
+        ignoring = 'trap "" CHLD; exec "$0" "$@"'
+        for command, code in (('exit 7', 4), ('kill -9 $$', 4), ('exit 0', 0)):
+            run = subprocess.run(['bash', '-c', ignoring, Setup.program, 'publish', build, '--progress', 'none', '--command', command],
+                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            self.assertEqual(run.returncode, code, (command, run))
+
+    def test_status_tells_of_each_place(self):
+        folder = self.region('places', LIMITS_OFF + '[build]\nformats = "gltf"\nreport = false\n[publish]\nweb_root = "../places_www"\n')
+        self.update(folder, SAMPLE)
+        self.assertNotIn('outward', blockrand('status', folder).out)
+        command, to, log, fail = self.command('by_hand')
+        open(fail, 'w', encoding='utf-8').close()
+        self.publish(folder, '--command', command, '--web-root', self.path('other_place'), code=4)
+        parts = {(p['what'], p['place']): p['failure'] for p in read_json(folder, 'outward', 'last.json')['parts']}
+        self.assertEqual(len(parts), 3, parts)
+        self.assertIsNone(parts['web-root', self.path('places_www')], 'another place by hand does not take its entry')
+        self.assertIn('exit code 7', parts['command', 'web'])
+        # A damaged build is a failure of each place.
+        tile = os.path.join(self.current(folder), 'tileset.json')
+        os.rename(tile, tile + '.away')
+        self.publish(folder, code=2)
+        to_do = [line for line in blockrand('status', folder).out.split('\n') if 'outward, to do' in line]
+        self.assertTrue(any('places_www' in line and 'tileset.json' in line for line in to_do), to_do)
+        os.rename(tile + '.away', tile)
+        # The next night has the places of region.toml alone.
+        self.assertIn('up to date', self.update(folder).out)
+        self.assertNotIn('outward', blockrand('status', folder).out)
 
     def test_a_web_root_is_mended(self):
         build, www = self.build(SAMPLE, 'mended'), self.path('mended_www')
@@ -247,6 +335,10 @@ class Outward(RegionTest):
 
     def test_variants(self):
         build, www = self.build(SAMPLE, 'packed'), self.path('packed_www')
+        self.publish(build, '--web-root', self.path('turned_on'))
+        planned = self.publish(build, '--web-root', self.path('turned_on'), '--variants', 'gzip', '--dry-run').out
+        self.assertIn(f'{len(named_by(build))} files to send', planned, 'turned on, it sends all again')
+        shutil.rmtree(build + '.outward')
         self.publish(build, '--web-root', www, '--variants', 'gzip')
         packed = [p for p in files_of(www) if p.endswith('.gz') and p[:-3] in named_by(build)]
         self.assertIn('report.json.gz', packed)
@@ -269,7 +361,10 @@ class Outward(RegionTest):
         build = self.build(SAMPLE, 'refusing', '--formats', 'gltf', '--no-report')
         self.refused(blockrand('publish', build), 1, 'nowhere to send to')
         self.refused(blockrand('publish', self.path('nothing')), 1, 'no region and no build')
-        self.refused(blockrand('publish', build, '--web-root', build), 1, 'is a build itself')
+        self.refused(blockrand('publish', build, '--web-root', build), 1, 'lies in the build')
+        self.refused(blockrand('publish', build, '--web-root', os.path.join(build, 'deep', 'www')), 1, 'lies in the build')
+        for dry in ([], ['--dry-run']):
+            self.refused(blockrand('publish', build, '--archive', os.path.join(build, 'a.3tz'), *dry), 1, 'lies in the build')
         self.refused(blockrand('publish', build, '--web-root', self.path('w'), '--target', 'a/b'), 1, 'no name of a target')
         self.refused(blockrand('publish', build, '--postgis', 'PG:dbname=x'), 1, 'has no GeoPackage')
         folder = self.region('secret', LIMITS_OFF + '[publish]\npostgis = "PG:dbname=x password=hush"\n')

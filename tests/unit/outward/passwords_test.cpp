@@ -14,12 +14,15 @@ TEST(Passwords, AreTakenOutOfConnections) {
   EXPECT_EQ(without_password("PG:password=x sslpassword=y"), "PG:password=*** sslpassword=***");
   EXPECT_EQ(without_password("postgresql://ann:s3:cr@et@db:5432/city?sslmode=require"),
             "postgresql://ann:***@db:5432/city?sslmode=require");
+  EXPECT_EQ(without_password("postgresql://ann:pa?ss@db/city"), "postgresql://ann:***@db/city");
+  EXPECT_EQ(without_password("postgresql://ann:pa?ss@db"), "postgresql://ann:***@db");
   EXPECT_EQ(without_password("postgresql://db/city?password=x&user=ann"), "postgresql://db/city?password=***&user=ann");
 }
 
 TEST(Passwords, WhatHasNoneStaysAsItIs) {
-  for (const std::string connection : {"PG:dbname=city host=db", "PG:service=city", "postgresql://ann@db/city",
-                                       "PG:dbname=password_store", "PG:password="})
+  for (const std::string connection :
+       {"PG:dbname=city host=db", "PG:service=city", "postgresql://ann@db/city",
+        "postgresql://db:5432/city?application_name=a@b", "PG:dbname=password_store", "PG:password="})
     EXPECT_EQ(without_password(connection), connection);
 }
 

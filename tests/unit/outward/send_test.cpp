@@ -5,6 +5,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "pipeline/base/error.h"
+#include "pipeline/outward/part_file.h"
 #include "pipeline/outward/variants.h"
 #include "tests/unit/outward/build_folder.h"
 
@@ -140,6 +142,62 @@ TEST_F(Send, GoesOnWhereItWasBrokenOff) {
   }
 }
 
+TEST_F(Send, GoesOnWhereItWasBrokenOffWithVariants) {
+  const std::string much(5000, 'a');
+  const std::string one = build("one", {{"tileset.json", tileset({"tiles/a.glb", "tiles/b.glb"})},
+                                        {"tiles/a.glb", much},
+                                        {"tiles/b.glb", much},
+                                        {"goes.csv", much},
+                                        {"shrinks.csv", much}});
+  const std::string two = build("two", {{"tileset.json", tileset({"tiles/a.glb", "tiles/b.glb"})},
+                                        {"tiles/a.glb", "has no variant any more"},
+                                        {"tiles/b.glb", much + "b"},
+                                        {"shrinks.csv", "neither has this"}});
+  std::map<std::string, std::string> wanted = hashes(two);
+  for (const auto& [path, file] : files_of_build(two))
+    if (!gzip_variant(two, file).empty()) wanted[path + ".gz"] = "gzip";
+  ASSERT_TRUE(wanted.contains("tiles/b.glb.gz"));
+  ASSERT_FALSE(wanted.contains("tiles/a.glb.gz"));
+  const SendOptions with{.keep_deleted_hours = 0, .batch = 1, .gzip = true};
+  constexpr int kSteps = 8;  // files that are sent and removed
+  for (int broken = 0; broken < kSteps; ++broken) {
+    std::filesystem::remove(path("state"));
+    Place place;
+    send(one, place, with);
+    place.calls_left = broken;
+    EXPECT_THROW(send(two, place, with), std::runtime_error) << broken;
+    place.calls_left = 1000;
+    send(two, place, with);
+    EXPECT_EQ(place.files, wanted) << "broken off after " << broken;
+  }
+}
+
+TEST_F(Send, PackedFilesOfTheBuildStayBesideTheirPlainOnes) {
+  const auto packed = [&](const std::string& name, const std::string& bytes) {
+    return build(
+        name,
+        {{"tileset.json", tileset({"tiles/a.glb"})}, {"tiles/a.glb", bytes}, {"tiles/a.glb.gz", "packed " + bytes}});
+  };
+  const std::string one = packed("one", "A1"), two = packed("two", "A2");
+  Place place;
+  const SendOptions with{.keep_deleted_hours = 0, .gzip = true};
+  send(one, place, with);
+  send(two, place, with);
+  EXPECT_EQ(place.files.at("tiles/a.glb.gz"), hashes(two).at("tiles/a.glb.gz"));
+}
+
+TEST_F(Send, ADryRunSeesThatVariantsAreMissing) {
+  const std::string folder = build("v", {{"a.csv", std::string(5000, 'a')}});
+  Place place;
+  send(folder, place);
+  const SendOptions with{.gzip = true};
+  TargetState state(path("state"));
+  EXPECT_EQ(look_ahead(files_of_build(folder), state, with, unix_time()).files, 0U);
+  settle_variants(state, with);
+  EXPECT_EQ(look_ahead(files_of_build(folder), state, with, unix_time()).files, 2U);
+  EXPECT_EQ(send(folder, place, with).files, 2U) << "as a real run does";
+}
+
 TEST_F(Send, AnotherBuildAfterABrokenOffOneLeavesNothingBehind) {
   const std::string one = first(), two = second();
   Place place;
@@ -234,6 +292,22 @@ TEST_F(Send, AFolderGetsWholeFilesAndLosesEmptyFolders) {
   EXPECT_THROW(send_build(two, files_of_build(two), folder_target(two, root), state, {}, progress), std::runtime_error);
   EXPECT_FALSE(std::filesystem::exists(root + "/tiles/a.glb"));
   EXPECT_FALSE(std::filesystem::exists(root + "/tiles/a.glb.blockrand-part"));
+}
+
+TEST_F(Send, PlacesWithinBuildsAndRegionsAreRefused) {
+  const std::string folder = first();
+  write(folder + "/run.json", "{}");
+  for (const std::string& inside : {folder, folder + "/areas", folder + "/areas/deep/down"}) {
+    EXPECT_THROW(folder_target(folder, inside), base::UsageError) << inside;
+    EXPECT_THROW(refuse_own_folders("--archive", inside + "/a.3tz"), base::UsageError) << inside;
+  }
+  write(path("region/region.toml"), "");
+  EXPECT_THROW(folder_target(folder, path("region/www")), base::UsageError);
+  EXPECT_NO_THROW(folder_target(folder, path("www")));
+  EXPECT_NO_THROW(refuse_own_folders("--archive", folder + ".3tz"));
+  // What was sent to a web root has no run.json: it may be sent to again.
+  write(path("www/build.json"), "{}");
+  EXPECT_NO_THROW(folder_target(folder, path("www")));
 }
 
 }  // namespace
