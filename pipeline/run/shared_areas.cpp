@@ -142,6 +142,7 @@ void SharedAreas::hand_in(const TileId& area, const std::string& key, AreaOutcom
   std::error_code error;
   make_folder(fs::path(to).parent_path().string());
   make_folder(folder_ + "/done");
+  make_folder(parts());  // a folder that was staged takes its empty parents along
   sync_disk(from);
   // A folder is renamed onto nothing, or onto an empty one: what another process handed in is never taken away while it is read.
   fs::rename(from, to, error);

@@ -181,7 +181,7 @@ class Cache(BuildTest):
                     f.write(f'\n[{preset}.{table}')
                 built = tiles(self.build(SAMPLE, 'a', *run))[0]
                 self.assertEqual(built > 0, worn, preset + table)
-        clean = self.build(SAMPLE, 'anew', '--configs', configs, '--lod', '3', *OPTIONS)
+        clean = self.build(SAMPLE, 'anew', '--configs', configs, *houses, *OPTIONS)
         self.same_files(clean, self.path('a'))
 
     def presets_of(self, folder):

@@ -82,7 +82,7 @@ class Masonry(BuildTest):
             text = f.read().replace('masonry = "fitted"', f'masonry = "{masonry}"{more}')
         with open(path, 'w', encoding='utf-8') as f:
             f.write(text)
-        return self.build(os.path.join(ROW, 'row.osm'), name + '_out', '--lod', '3', '--formats',
+        return self.build(os.path.join(ROW, 'row.osm'), name + '_out', '--lod', '3', '--surroundings', 'off', '--formats',
                           'cityjson,citygml,gltf', '--districts', path)
 
     def test_stones_of_the_row(self):
