@@ -152,7 +152,7 @@ class Updater {
     if (options_.dry_run) return summary_;
     line_ = run_line(summary_, progress_);
     append_run(region_, line_, progress_);
-    if (state != UpdateState::unchanged) try {
+    if (state != UpdateState::unchanged && state != UpdateState::shared) try {
         write_whole(region_.log(summary_.number).substr(0, region_.log(summary_.number).rfind('.')) + ".report.txt",
                     run_report(region_, summary_.folder, line_));
       } catch (const base::OutputError& error) {

@@ -15,7 +15,7 @@ from osm_files import read_xml
 from region_run import Map, RegionTest
 
 SETTINGS = '''[build]
-lod = 3
+lod = 2
 areas = 13
 formats = "gltf,citygml,geopackage"
 [region]
@@ -23,7 +23,7 @@ replication = "../server"
 first_sequence = 1
 keep = 3
 '''
-OPTIONS = ('--lod', '3', '--areas', '13', '--formats', 'gltf,citygml,geopackage')
+OPTIONS = ('--lod', '2', '--areas', '13', '--formats', 'gltf,citygml,geopackage')
 CONFIGS = os.path.realpath(os.path.join(os.path.dirname(SAMPLE), '..', 'configs'))
 NIGHTS = 14
 TORN, KILLED, MISSED, VANDALISED, UPGRADE = 3, 6, 8, 10, 12
