@@ -40,6 +40,7 @@
 #include "pipeline/run/data_identity.h"
 #include "pipeline/run/documents.h"
 #include "pipeline/run/estimate.h"
+#include "pipeline/run/ground_heights.h"
 #include "pipeline/run/imagery_stage.h"
 #include "pipeline/run/outcome.h"
 #include "pipeline/run/output_place.h"
@@ -49,7 +50,6 @@
 #include "pipeline/run/tile_stages.h"
 #include "pipeline/run/tile_work.h"
 #include "pipeline/run/whole_model.h"
-#include "pipeline/surroundings/tile_squares.h"
 
 namespace blockrand::run {
 
@@ -107,24 +107,6 @@ attributes::AssignInputs assign_inputs(const BuildOptions& options, const BuildI
 }
 
 // ---- the tiles
-/// Heights of the terrain for the surroundings; empty where there is none.
-surroundings::HeightAt terrain_height(const BuildInputs& inputs, const georef::Projection& projection) {
-  if (!inputs.terrain) return {};
-  return [&](model::Point2 place) -> std::optional<double> {
-    const georef::LonLat at = projection.inverse(place);
-    const auto range = inputs.terrain->range_along({&at, 1});
-    return range ? std::optional(range->lowest) : std::nullopt;
-  };
-}
-
-/// The ground that pictures are laid on; empty where none is asked for.
-std::function<model::GroundMesh(model::TileId)> ground_mesh_of(const BuildOptions& options, const BuildInputs& inputs,
-                                                               const georef::Projection& projection) {
-  if (options.outputs.ground != outputs::GroundChoice::imagery) return {};
-  return [&projection, height = terrain_height(inputs, projection), level = options.ground_height.value_or(0)](
-             model::TileId tile) { return surroundings::ground_mesh(projection, tile, height, level); };
-}
-
 /// What the tiles add up to, taken in their order.
 struct Sums {
   std::vector<outputs::PartySide> party_sides;
