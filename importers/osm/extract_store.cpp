@@ -16,6 +16,7 @@
 #include "pipeline/base/pack.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/georef/tiles.h"
+#include "pipeline/model/osm_keys.h"
 
 namespace blockrand::importers::osm {
 
@@ -100,6 +101,7 @@ struct Version {
   Box box;
   Interest interest;
   bool related = false;  ///< a relation of buildings, or one whose ways are some
+  bool coast = false;
 };
 
 using Versions = std::map<std::pair<osmium::item_type, std::int64_t>, Version>;
@@ -108,6 +110,11 @@ model::OsmType type_of(osmium::item_type type) {
   return type == osmium::item_type::node  ? model::OsmType::node
          : type == osmium::item_type::way ? model::OsmType::way
                                           : model::OsmType::relation;
+}
+
+bool is_coast(const OSMObject& object) {
+  const char* natural = object.tags()[model::osm_key::kNatural.data()];
+  return natural && std::string_view(natural) == "coastline";
 }
 
 }  // namespace
@@ -119,11 +126,9 @@ std::vector<ChangedObject> ExtractStore::changes_since(const ExtractStore& befor
     const CellEntry* cell = state.find(tile);
     if (!cell) return versions;
     state.for_each({cell}, {}, osmium::osm_entity_bits::nwr, [&](const OSMObject& object) {
-      Version version{told(object),
-                      told_place(object),
-                      {},
-                      interest_of(type_of(object.type()), object, state.index.figures.surroundings),
-                      false};
+      Version version{told(object), told_place(object),
+                      {},           interest_of(type_of(object.type()), object, state.index.figures.surroundings),
+                      false,        is_coast(object)};
       if (object.type() == osmium::item_type::node) {
         const model::Location at = position_of(static_cast<const osmium::Node&>(object).location());
         if (is_known(at)) version.box.add(at);
@@ -153,12 +158,15 @@ std::vector<ChangedObject> ExtractStore::changes_since(const ExtractStore& befor
       changed.kinds |= v->interest.kinds;
       changed.building = changed.building || v->interest.is_building() || v->related;
       changed.network = changed.network || v->interest.covered_way;
+      changed.coast = changed.coast || v->coast;
       changed.placeless = changed.placeless || v->box.empty();
       box.add(v->box);
     }
     using enum model::FeatureKind;
     for (const model::FeatureKind kind : {street, railway, water, passage})
       changed.network = changed.network || (changed.kinds & static_cast<std::uint32_t>(kind)) != 0;
+    changed.is_surrounding =
+        !changed.building && !changed.network && changed.kinds == static_cast<std::uint32_t>(surrounding);
     // Relations share out what their ways say.
     changed.look_only = key.first == osmium::item_type::way && both.size() == 2 &&
                         (*both.begin())->place == (*(both.end() - 1))->place && changed.building && !changed.network;

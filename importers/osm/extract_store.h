@@ -47,6 +47,8 @@ struct ChangedObject {
   bool placeless = false;   ///< a version has no known position at all
   bool look_only =
       false;  ///< a way that is a building; of tags that it had, values of storeys, roof, colours, materials or year alone differ
+  bool is_surrounding = false;  ///< no more than something that stands around houses (Interest::surroundings)
+  bool coast = false;           ///< it bounds the sea
   std::array<double, 4> box{};  ///< west, south, east, north in degrees
 };
 

@@ -213,6 +213,8 @@ struct DistrictAssigner::Impl {
       case Kind::near: {
         const base::StringId key = in.extract.strings.find(q.feature.key);
         for (const Feature& f : in.extract.features) {
+          // What is there for the surroundings alone changes no house.
+          if (f.kinds == static_cast<std::uint32_t>(FeatureKind::surrounding)) continue;
           const std::string_view value = in.extract.tag(f.tags, key);
           if (value.empty() || (!q.feature.value.empty() && value != q.feature.value)) continue;
           for (const model::MappedRing& r : in.extract.rings_of(f.rings)) {

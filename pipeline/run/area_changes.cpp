@@ -60,16 +60,9 @@ bool is_within(const importers::osm::ChangedObject& change, const std::array<dou
 
 }  // namespace
 
-bool any_within(const TileChoice& area, std::span<const importers::osm::ChangedObject> changes) {
-  return std::ranges::any_of(changes, [&](const importers::osm::ChangedObject& change) {
-    if (change.placeless && area.placeless) return true;
-    return !(change.placeless && change.box == std::array<double, 4>{}) && is_within(change, area.window);
-  });
-}
-
 AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
                             std::span<const importers::osm::ChangedObject> changes, const RulesReach& rules,
-                            const georef::Projection& projection) {
+                            bool surroundings, const georef::Projection& projection) {
   AreaChanges out;
   std::vector<PlanBox> needed;
   const georef::GeoBox own = georef::bounds(area.id);
@@ -82,10 +75,17 @@ AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
     const geometry::PlanBox box = projected_box(change.box, projection);
     const double beyond = std::max(change.network ? kNetworkReach : 0, change.kinds != 0 ? rules.metres : 0);
     const bool look_only = change.look_only && !(rules.asks_look && change.kinds != 0);
+    // These are heard of from farther away than reaches say (SurroundingsFinder::reach).
+    if (surroundings && change.coast) return look_into_all("the coast, " + change.id.text());
+    if (surroundings &&
+        std::max(change.box[2] - change.box[0], change.box[3] - change.box[1]) > importers::osm::kWholeSpan)
+      return look_into_all(change.id.text() + " spans much of it");
     constexpr double kBent = 1;  // m: sides of the box of an object in the projection
     for (const auto& [tile, reach] : reaches)
       if (look_only ? reach.look.near(box, kBent)
-                    : (change.building && reach.far.near(box, kBent)) || reach.near.near(box, beyond + kBent)) {
+          : change.is_surrounding
+              ? reach.around.near(box, kBent)
+              : (change.building && reach.far.near(box, kBent)) || reach.near.near(box, beyond + kBent)) {
         out.tiles.insert(tile);
         if (change.network) out.other_network.insert(tile);
       }
@@ -105,7 +105,7 @@ AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
           const georef::GeoBox b = georef::bounds(tile);
           const geometry::PlanBox ground = projected_box({b.west, b.south, b.east, b.north}, projection);
           const CellRuns alone{{}, ground};
-          needed.push_back(around(needed_around({alone, ground, alone, alone}, rules.metres, true), box));
+          needed.push_back(around(needed_around({alone, ground, alone, alone, alone}, rules.metres, true), box));
         }
   }
   if (out.tiles.empty()) return {};

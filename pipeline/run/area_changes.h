@@ -29,12 +29,10 @@ struct RulesReach {
   bool asks_look = false;  ///< rules_ask_look
 };
 
-/// Whether a change lies where something is read for the area.
-bool any_within(const TileChoice& area, std::span<const importers::osm::ChangedObject> changes);
-
-/// \param reaches  of all tiles of the area, as they were before the changes
+/// \param reaches       of all tiles of the area, as they were before the changes
+/// \param surroundings  are made
 AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
                             std::span<const importers::osm::ChangedObject> changes, const RulesReach& rules,
-                            const georef::Projection& projection);
+                            bool surroundings, const georef::Projection& projection);
 
 }  // namespace blockrand::run

@@ -245,15 +245,8 @@ void AreaParts::look_at_changes(std::size_t i, std::span<const importers::osm::C
     return;
   }
   part.roomy = true;  // work on most of its tiles is kept
-  if (options_.surroundings.any()) {
-    // Reaches are those of buildings.
-    if (any_within(part.choice, changes))
-      why_whole_[i] = "what stands around the houses is looked into as a whole";
-    else
-      unconcerned_.insert(i), why_whole_[i].clear();
-    return;
-  }
-  AreaChanges concerned = concerned_tiles(part.choice, reaches, changes, rules, projection);
+  AreaChanges concerned =
+      concerned_tiles(part.choice, reaches, changes, rules, options_.surroundings.any(), projection);
   why_whole_[i] = std::move(concerned.why_whole);
   if (concerned.tiles.empty() && why_whole_[i].empty())
     unconcerned_.insert(i);

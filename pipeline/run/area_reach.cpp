@@ -58,7 +58,7 @@ class Reaches {
   }
 
   /// \param own  what lies in the tile, as mapped and as repaired
-  TileReach reach(const PlanBox& own) {
+  TileReach reach(const model::TileId& tile, const PlanBox& own) {
     const classify::Tables& tables = in_.tables;
     const double heard = std::max({classify::kNearReach, tables.era_votes.reach, tables.storeys_votes.reach,
                                    tables.roof_votes.reach, tables.non_houses.equal_radius});
@@ -98,11 +98,19 @@ class Reaches {
     touch(near, classify::kNearReach);
     touch(near, context::kWallSegmentReach);
     near.include(look);
+    PlanCells around(common(extent_, cells_of(grown(own, kFar))));
+    if (in_.around) {
+      const surroundings::SurroundingsReach heard_around = in_.around->reach(tile);
+      for (const PlanBox& place : heard_around.things) around.include(place);
+      near.include(around);
+      for (const PlanBox& block : heard_around.blocks) near.include(block);
+      add(outlines_, near);
+    }
     far.include(near);
     add(rows_, near), add(rows_, far);
     CellRuns runs = near.runs();
     add_blocks(near);  // whose corners say which buildings stand at their streets
-    return {std::move(runs), near.runs().box, far.runs(), look.runs()};
+    return {std::move(runs), near.runs().box, far.runs(), look.runs(), around.runs()};
   }
 
  private:
@@ -191,7 +199,7 @@ AreaReach reaches_of(const ReachInputs& inputs, std::span<const model::TileId> t
   }
   Reaches reaches(inputs);
   AreaReach out;
-  for (const auto& [tile, box] : own) out.emplace(tile, reaches.reach(box));
+  for (const auto& [tile, box] : own) out.emplace(tile, reaches.reach(tile, box));
   return out;
 }
 

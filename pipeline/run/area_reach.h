@@ -10,6 +10,7 @@
 #include "pipeline/georef/projection.h"
 #include "pipeline/run/plan_cells.h"
 #include "pipeline/run/prepare_extract.h"
+#include "pipeline/surroundings/surroundings.h"
 
 namespace blockrand::run {
 
@@ -19,6 +20,8 @@ struct TileReach {
   geometry::PlanBox blocks;  ///< m, around `near` and the blocks of the buildings there
   CellRuns far;   ///< and, where something asks for them, outlines of what stands in the district cells around
   CellRuns look;  ///< of values of tags that say how a building looks: storeys, roofs, years (ChangedObject::look_only)
+  CellRuns
+      around;  ///< of what stands around houses (ChangedObject::is_surrounding); `near` has it as well, and blocks that come there
 };
 
 /// Areas of a coarser level are looked into as a whole: what their tiles hear of would take more room than it is worth.
@@ -35,7 +38,8 @@ struct ReachInputs {
   const classify::Tables& tables;
   const districts::RuleSets& book;
   const TileChoice& area;
-  double neighbour_reach = 0;  ///< m, GenerateOptions
+  double neighbour_reach = 0;                                ///< m, GenerateOptions
+  const surroundings::SurroundingsFinder* around = nullptr;  ///< null: no surroundings
 };
 
 /// Of the wanted tiles of the area, with or without buildings.

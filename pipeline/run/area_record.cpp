@@ -33,6 +33,7 @@ class Recorder {
     find_owners();
     take_objects();
     take_buildings();
+    take_things();
     take_rows();
     take_context();
     take_lines();
@@ -107,13 +108,27 @@ class Recorder {
     }
   }
 
+  /// The tile of the first vertex.
+  TileId tile_of(const model::Feature& feature) const {
+    for (const model::MappedRing& ring : in_.extract.rings_of(feature.rings))
+      if (const auto vertices = in_.extract.vertices_of(ring); !vertices.empty()) return tile_at(vertices.front());
+    return kNowhere;
+  }
+
+  void take_things() {
+    if (!in_.thing_of) return;
+    for (const model::Feature& feature : in_.extract.features) {
+      const TileId tile = tile_of(feature);
+      if (!is_here(tile)) continue;
+      if (const std::optional<RecordedThing> thing = in_.thing_of(feature)) out_[tile].things.push_back(*thing);
+    }
+  }
+
   /// Rows of objects stand with these, others in the tile of the first vertex.
   void take_rows() {
     std::map<OsmId, TileId> features;
-    for (const model::Feature& f : in_.extract.features) {
-      if (f.rings.count == 0 || in_.extract.rings[f.rings.first].vertices.count == 0) continue;
-      features.emplace(f.id, tile_at(in_.extract.vertices_of(in_.extract.rings[f.rings.first]).front()));
-    }
+    for (const model::Feature& f : in_.extract.features)
+      if (const TileId tile = tile_of(f); tile != kNowhere) features.emplace(f.id, tile);
     const auto& buildings = in_.extract.buildings;
     for (const model::ReportRow& row : in_.rows) {
       const auto object = std::ranges::lower_bound(buildings, row.object, {}, &model::MappedBuilding::id);
@@ -238,9 +253,11 @@ AreaAsTold told_area(const AreaRecord& record, std::span<const model::Point2> co
   for (const auto& [id, tile] : record) {
     for (std::uint32_t i = 0; i < tile.objects.size(); ++i) objects.push_back({tile.objects[i].id, {&tile, i}});
     data.add(tile.data_sha256);
+    out.things.insert(out.things.end(), tile.things.begin(), tile.things.end());
     out.rows.insert(out.rows.end(), tile.rows.begin(), tile.rows.end());
   }
   out.data_sha256 = data.finish();
+  std::ranges::sort(out.things, {}, &RecordedThing::id);
   std::ranges::sort(objects, {}, [](const auto& o) { return o.first; });
   std::map<const TileRecord*, std::vector<std::uint32_t>> place_of;  // of a tile's objects in the extract
   for (const auto& [id, where] : objects) {

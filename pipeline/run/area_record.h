@@ -54,12 +54,20 @@ struct RecordedCourtyard {
   std::vector<model::OsmId> buildings;
 };
 
+/// Something that the surroundings of houses are asked for.
+struct RecordedThing {
+  model::OsmId id;
+  std::uint8_t kind = 0;  ///< surroundings::SurroundingKind
+  bool inside = false;    ///< far enough from the border of the area: no other one tells of it
+};
+
 /// One tile of an area.
 struct TileRecord {
   bool is_tile = false;                 ///< it has buildings to build
   std::string key;                      ///< of the work on it (TileKey::key)
   std::vector<RecordedObject> objects;  ///< by id
   std::vector<RecordedBuilding> buildings;
+  std::vector<RecordedThing> things;   ///< that begin here, by id
   std::vector<model::ReportRow> rows;  ///< from before the tiles, sorted
   std::string data_sha256;             ///< of its objects
   std::uint64_t terrace_rows = 0;      ///< that begin here
@@ -87,6 +95,8 @@ struct RecordInputs {
   const georef::Projection& projection;
   std::span<const model::ReportRow> rows;  ///< from before the tiles
   const TileChoice& area;
+  /// What of the features to tell as things around houses; empty: nothing.
+  std::function<std::optional<RecordedThing>(const model::Feature&)> thing_of;
 };
 
 /// \param wanted  which tiles of the area
@@ -101,6 +111,7 @@ struct AreaAsTold {
   std::vector<footprints::Shard> shards;
   footprints::RepairedExtract repaired;
   context::ContextExtract context;
+  std::vector<RecordedThing> things;  ///< by id
   std::vector<model::ReportRow> rows;
   std::string data_sha256, data_time;
   model::ExtractCounts counts;

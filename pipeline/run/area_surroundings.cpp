@@ -20,22 +20,20 @@ constexpr double kToldBeside = 150;
 
 }  // namespace
 
-std::function<bool(const Feature&)> begins_in(const model::Extract& extract, const model::TileId& area,
-                                              bool placeless) {
-  return [&extract, area, placeless](const Feature& feature) {
-    for (const model::MappedRing& ring : extract.rings_of(feature.rings))
-      if (const auto vertices = extract.vertices_of(ring); !vertices.empty())
-        return georef::tile_of(vertices.front(), area.level) == area;
-    return placeless;
-  };
+bool begins_in(const model::Extract& extract, const Feature& feature, const model::TileId& area, bool placeless) {
+  for (const model::MappedRing& ring : extract.rings_of(feature.rings))
+    if (const auto vertices = extract.vertices_of(ring); !vertices.empty())
+      return georef::tile_of(vertices.front(), area.level) == area;
+  return placeless;
 }
 
-std::vector<SharedOutcome> shared_outcomes(const surroundings::SurroundingAccount& account,
-                                           const model::Extract& extract, const model::TileId& area) {
+std::function<std::optional<RecordedThing>(const Feature&)> thing_recorder(
+    const model::Extract& extract, const surroundings::Catalogue& catalogue,
+    const surroundings::SurroundingOptions& layers, const model::TileId& area) {
   const georef::GeoBox around = georef::with_halo(area, kToldBeside), own = georef::bounds(area);
   const double x = std::max(around.east - own.east, own.west - around.west),
                y = std::max(around.north - own.north, own.south - around.south);
-  const auto is_within = [&](const Feature& feature) {
+  const auto is_within = [&extract, own, x, y](const Feature& feature) {
     constexpr double kUnit = 1e-7;
     for (const model::MappedRing& ring : extract.rings_of(feature.rings))
       for (const model::Location at : extract.vertices_of(ring)) {
@@ -44,12 +42,21 @@ std::vector<SharedOutcome> shared_outcomes(const surroundings::SurroundingAccoun
       }
     return true;
   };
+  return [&extract, &catalogue, layers, is_within](const Feature& feature) -> std::optional<RecordedThing> {
+    const surroundings::TagOf tag = [&](std::string_view key) { return extract.tag(feature.tags, key); };
+    const std::optional<surroundings::SurroundingKind> kind = surroundings::kind_of(feature, tag, catalogue);
+    if (!kind || !surroundings::is_asked(*kind, layers)) return std::nullopt;
+    return RecordedThing{feature.id, static_cast<std::uint8_t>(*kind), is_within(feature)};
+  };
+}
+
+std::vector<SharedOutcome> close_surroundings(std::span<const RecordedThing> things,
+                                              surroundings::SurroundingAccount& account) {
+  for (const RecordedThing& thing : things) account.take({thing.id, thing.kind, surroundings::kElsewhere});
   std::vector<SharedOutcome> out;
-  auto feature = extract.features.begin();
   for (const auto& [id, told] : account.outcomes()) {
-    while (feature != extract.features.end() && feature->id < id) ++feature;
-    const bool known = feature != extract.features.end() && feature->id == id;
-    if (!known || !is_within(*feature)) out.push_back({id, told.kind, told.state});
+    const auto thing = std::ranges::lower_bound(things, id, {}, &RecordedThing::id);
+    if (thing == things.end() || thing->id != id || !thing->inside) out.push_back({id, told.kind, told.state});
   }
   return out;
 }

@@ -144,9 +144,14 @@ class Surveyor {
          tiles_with_surroundings(extract, tiles_in(georef::bounds(tile), footprints::kTileLevel)))
       if (georef::contains(tile, t)) facts.tiles.push_back(t);
     surroundings::SurroundingAccount account;
-    account.take_elsewhere(extract, *catalogue_, options_.surroundings, begins_in(extract, tile, placeless));
+    const auto thing_of = thing_recorder(extract, *catalogue_, options_.surroundings, tile);
+    std::vector<RecordedThing> things;
+    for (const model::Feature& feature : extract.features)
+      if (const std::optional<RecordedThing> thing = thing_of(feature);
+          thing && begins_in(extract, feature, tile, placeless))
+        things.push_back(*thing);
+    facts.shared = close_surroundings(things, account);
     facts.surroundings = account.counts();
-    facts.shared = shared_outcomes(account, extract, tile);
   }
 
   const importers::osm::ExtractStore& store_;

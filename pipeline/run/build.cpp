@@ -241,16 +241,6 @@ void warn_of_terrain(const BuildInputs& inputs, base::Progress& progress) {
         inputs.terrain->describe().path, pixel->column, pixel->row, pixel->metres));
 }
 
-/// What no tile told of. A tile that is built alone tells of what is in it, and no more.
-void account_of_surroundings(const BuildOptions& options, const Extract& extract, const std::optional<TileChoice>& tile,
-                             const surroundings::Catalogue& catalogue, BuildRecord& record) {
-  if (tile && !record.area) return;
-  std::function<bool(const model::Feature&)> wanted = [](const model::Feature&) { return true; };
-  if (record.area) wanted = begins_in(extract, *record.area, tile->placeless);
-  record.surroundings.take_elsewhere(extract, catalogue, options.surroundings, wanted);
-  if (record.area) record.summary.shared_surroundings = shared_outcomes(record.surroundings, extract, *record.area);
-}
-
 void finish_outputs(const OpenOutputs& open, const Region& whole, const Account& account, BuildRecord& record,
                     base::Progress& progress) {
   const outputs::FinishedBuild finished{
@@ -339,6 +329,18 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   const footprints::RepairedExtract& repaired = prepared.repaired;
   const context::ContextExtract& context = prepared.context;
   report.append(std::move(prepared.report));
+  const context::VicinityFinder vicinity(extract, repaired.footprints, context, prepared.labels.get());
+  std::optional<surroundings::SurroundingsFinder> finder;
+  if (inputs.surroundings)
+    finder.emplace(surroundings::SurroundingInputs{.extract = extract,
+                                                   .footprints = repaired.footprints,
+                                                   .context = context,
+                                                   .vicinity = vicinity,
+                                                   .projection = projection,
+                                                   .catalogue = *inputs.surroundings},
+                   options.surroundings, terrain_height(inputs, projection), options.ground_height.value_or(0),
+                   options.seed);
+  const surroundings::SurroundingsFinder* around = finder ? &*finder : nullptr;
   // What documents tell: of an area what lies in it, whatever was read around it.
   AreaRecord tiles_here;
   std::optional<AreaAsTold> area;
@@ -350,12 +352,15 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
                                .context = context,
                                .projection = projection,
                                .rows = report.rows,
-                               .area = *tile},
+                               .area = *tile,
+                               .thing_of = inputs.surroundings ? thing_recorder(extract, *inputs.surroundings,
+                                                                                options.surroundings, *record.area)
+                                                               : nullptr},
                               tile->only ? records_before(*part, cache.get()) : AreaRecord());
     if (cache)
-      note_reaches(*tile,
-                   {located, prepared, inputs.tables, inputs.rules.book, *tile, options.generate.neighbour_reach},
-                   tiles_here);
+      note_reaches(
+          *tile, {located, prepared, inputs.tables, inputs.rules.book, *tile, options.generate.neighbour_reach, around},
+          tiles_here);
     area = told_area(tiles_here, located.facts.coverage);
     report.rows = std::move(area->rows);
     record.data_sha256 = area->data_sha256, record.data_time = area->data_time, record.counts = area->counts;
@@ -365,7 +370,6 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   record.repair = area ? area->repaired.totals : repaired.totals;
   record.facts = located.facts;
   imagery.tell(record);
-  const context::VicinityFinder vicinity(extract, repaired.footprints, context, prepared.labels.get());
   const footprints::RoofLineFinder roof_lines(extract, projection);
   const footprints::BuildingNumbers numbers(repaired.footprints);
   const context::TaggedNeighbours neighbours(attributes::tagged_buildings(extract, inputs.defaults, projection),
@@ -461,17 +465,6 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
                                .has_terrain = inputs.terrain.has_value(),
                                .ground = [&](const model::Building& building) { return ground.under(building); },
                                .context_time = context_time};
-  std::optional<surroundings::SurroundingsFinder> finder;
-  if (inputs.surroundings)
-    finder.emplace(surroundings::SurroundingInputs{.extract = extract,
-                                                   .footprints = repaired.footprints,
-                                                   .context = context,
-                                                   .vicinity = vicinity,
-                                                   .projection = projection,
-                                                   .catalogue = *inputs.surroundings},
-                   options.surroundings, terrain_height(inputs, projection), options.ground_height.value_or(0),
-                   options.seed);
-  const surroundings::SurroundingsFinder* around = finder ? &*finder : nullptr;
   std::optional<TileKeys> keys;
   if (tiles_are_kept(cache.get(), inputs, open, progress))
     keys.emplace(tile_inputs, inputs, around, shared_key(options, inputs, record), account.earlier(), open.list);
@@ -533,7 +526,11 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   base::ordered_parallel(todo.size(), workers, in_flight, work, consume, load);
   sums.settle(record);
   warn_of_terrain(inputs, progress);
-  if (finder) account_of_surroundings(options, extract, tile, *inputs.surroundings, record);
+  // A tile that is built alone tells of what is in it, and no more.
+  if (finder && area)
+    summary.shared_surroundings = close_surroundings(area->things, record.surroundings);
+  else if (finder && !tile)
+    record.surroundings.take_elsewhere(extract, *inputs.surroundings, options.surroundings);
   account.close(area ? std::nullopt : tile, shards, looked_into, summary);
   if (!options.measure) refuse_shrunk(options, summary, place.earlier);
 

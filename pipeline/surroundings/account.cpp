@@ -52,12 +52,11 @@ void SurroundingAccount::take(const SharedOutcome& outcome) {
 }
 
 void SurroundingAccount::take_elsewhere(const model::Extract& extract, const Catalogue& catalogue,
-                                        const SurroundingOptions& layers,
-                                        const std::function<bool(const model::Feature&)>& wanted) {
+                                        const SurroundingOptions& layers) {
   for (const model::Feature& feature : extract.features) {
     const TagOf tag = [&](std::string_view key) { return extract.tag(feature.tags, key); };
     const std::optional<SurroundingKind> kind = kind_of(feature, tag, catalogue);
-    if (kind && is_asked(*kind, layers) && wanted(feature))
+    if (kind && is_asked(*kind, layers))
       outcomes_.try_emplace(feature.id, Told{static_cast<std::uint8_t>(*kind), kElsewhere});
   }
 }

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <span>
 #include <string_view>
@@ -38,9 +37,8 @@ class SurroundingAccount {
   void take(std::span<const model::SurroundingOutcome> outcomes);
   /// Also kElsewhere.
   void take(const SharedOutcome& outcome);
-  /// All things of the extract that no tile had to do with. \param wanted  of which of them to tell
-  void take_elsewhere(const model::Extract& extract, const Catalogue& catalogue, const SurroundingOptions& layers,
-                      const std::function<bool(const model::Feature&)>& wanted);
+  /// All things of the extract that no tile had to do with.
+  void take_elsewhere(const model::Extract& extract, const Catalogue& catalogue, const SurroundingOptions& layers);
   bool empty() const { return outcomes_.empty(); }
   const std::map<model::OsmId, Told>& outcomes() const { return outcomes_; }
   SurroundingCounts counts() const;

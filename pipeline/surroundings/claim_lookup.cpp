@@ -72,6 +72,12 @@ const Thing* ClaimFinder::thing_of(model::OsmId id) const {
   return at != things_.end() && at->feature == index ? &*at : nullptr;
 }
 
+std::vector<geometry::PlanBox> ClaimFinder::blocks_near(const geometry::PlanBox& box) const {
+  std::vector<geometry::PlanBox> out;
+  for (const std::uint32_t b : blocks_.near(box, 0)) out.push_back(blocks_.box(b));
+  return out;
+}
+
 bool ClaimFinder::building_at(Point2 place) const {
   geometry::PlanBox at;
   at.include(place);

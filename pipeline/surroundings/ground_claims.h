@@ -134,6 +134,9 @@ class ClaimFinder {
   };
   BridgeRun bridge_run(const Thing& thing) const;
 
+  /// The boxes of the blocks that come into a box.
+  std::vector<geometry::PlanBox> blocks_near(const geometry::PlanBox& box) const;
+
   /// Everything that claims ground within a box.
   GroundClaims claims_in(const geometry::PlanBox& box) const;
 

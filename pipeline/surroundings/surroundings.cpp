@@ -365,6 +365,38 @@ void SurroundingsFinder::pack(model::TileId tile, base::Packer& out) const {
   }
 }
 
+SurroundingsReach SurroundingsFinder::reach(model::TileId tile) const {
+  SurroundingsReach out;
+  PlanBox box;
+  for (const SquareIndex s : squares_of(tile)) box.include(box_of(s));
+  if (box.empty()) return out;
+  const auto add = [&](const PlanBox& place) { out.things.push_back(grown(place, kTownStreetReach)); };
+  // The segments of lines that come near the squares.
+  const auto add_lines = [&](const Thing& thing, double distance) {
+    const bool area = in_.extract.features[thing.feature].area;
+    for (const std::vector<Point2>& line : claims_.lines_of(thing))
+      for (std::size_t i = area ? 0 : 1; i < line.size(); ++i) {
+        PlanBox segment;
+        segment.include(line[i]), segment.include(i > 0 ? line[i - 1] : line.back());
+        if (segment.near(box, distance)) add(segment);
+      }
+  };
+  add(box);
+  for (const std::uint32_t t : claims_.things_near(box, 0)) {
+    const Thing& thing = claims_.things()[t];
+    const model::Feature& feature = in_.extract.features[thing.feature];
+    if (feature.area || thing.hidden || feature.rings.count != 1) continue;
+    if (has_wires(in_, thing)) add_lines(thing, kMostSpan);
+    if (thing.kind == SurroundingKind::bridge) add(geometry::box_of(claims_.bridge_run(thing).line));
+  }
+  for (const std::uint32_t t : claims_.coasts()) add_lines(claims_.things()[t], geometry::kCoastReach);
+  for (const Thing& thing : claims_.things())
+    if (thing.wide) add_lines(thing, kWideReach);
+  for (const PlanBox& place : std::vector<PlanBox>(out.things))
+    for (const PlanBox& block : claims_.blocks_near(place)) out.blocks.push_back(block);
+  return out;
+}
+
 void SurroundingsFinder::pack_thing(const Thing& thing, const PlanBox& around, base::Packer& out) const {
   const model::Extract& e = in_.extract;
   const model::Feature& feature = e.features[thing.feature];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "pipeline/base/pack.h"
 #include "pipeline/model/region.h"
@@ -19,6 +20,14 @@ namespace blockrand::surroundings {
 inline constexpr double kSurroundingsReach = kStreetReach + kBuiltUpReach;
 /// m: how far around its squares nodes of lines tell of anything: the ends of a piece of a street (150 m), junctions before a stop line.
 inline constexpr double kNodeReach = 250;
+/// m: how far houses make a street one of a town: a piece of it, and what stands beside it.
+inline constexpr double kTownStreetReach = 280;
+
+/// Where a change of the map can make what stands around a tile another one.
+struct SurroundingsReach {
+  std::vector<geometry::PlanBox> things;  ///< m: of anything mapped, and of houses
+  std::vector<geometry::PlanBox> blocks;  ///< m: of houses, and of what bounds these blocks
+};
 
 /// Read-only once made, safe to share between threads; what it is made of outlives it.
 class SurroundingsFinder {
@@ -34,6 +43,9 @@ class SurroundingsFinder {
 
   /// All that `around` reads of the map, so that a tile for which it is another counts as changed.
   void pack(model::TileId tile, base::Packer& out) const;
+
+  /// Where that lies. Coasts and wide areas (Thing::wide) as they are now: a new one is heard of from farther away.
+  SurroundingsReach reach(model::TileId tile) const;
 
  private:
   class Heights;

@@ -22,8 +22,6 @@ constexpr double kLineSag = 0.03, kMinorSag = 0.015, kCableSag = 0.02;
 constexpr double kRadius = 0.03;
 /// m of a piece, and how many a span has.
 constexpr double kPiece = 15, kLeastPieces = 4, kMostPieces = 12;
-/// m. A longer span has supports that nobody mapped.
-constexpr double kMostSpan = 1500;
 /// m: wires hang no farther beside the line between two supports.
 constexpr double kMostBeside = 50;
 /// m above the ground: lower wires over a building would come near its roof.

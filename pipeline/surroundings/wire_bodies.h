@@ -8,6 +8,9 @@
 
 namespace blockrand::surroundings {
 
+/// m. A longer span has supports that nobody mapped.
+inline constexpr double kMostSpan = 1500;
+
 /// Whether a thing is a line of wires: power=line, minor_line; aerialway=* but pylons and stations.
 bool has_wires(const SurroundingInputs& in, const Thing& thing);
 

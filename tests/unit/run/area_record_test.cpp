@@ -121,7 +121,7 @@ TEST(AreaReach, WindowsHoldWhatIsNeeded) {
   const geometry::PlanBox tile = projected_box({bounds.west, bounds.south, bounds.east, bounds.north}, projection);
   PlanCells cells(cells_of(tile));
   cells.include(tile);
-  TileReach reach{cells.runs(), tile, cells.runs(), cells.runs()};
+  TileReach reach{cells.runs(), tile, cells.runs(), cells.runs(), {}};
   reach.near.box = reach.far.box = tile;
   reach.far.box.maximum.x += 700;
   EXPECT_LT(needed_around(reach, 0, false).maximum.y, tile.maximum.y + 300) << "nothing changed that makes blocks";
@@ -146,7 +146,7 @@ TileReach reach_of(const model::TileId& tile, double metres, const georef::Proje
   box.maximum = {box.maximum.x + metres, box.maximum.y + metres};
   PlanCells cells(cells_of(box));
   cells.include(box);
-  return {cells.runs(), box, cells.runs(), cells.runs()};
+  return {cells.runs(), box, cells.runs(), cells.runs(), {}};
 }
 
 importers::osm::ChangedObject changed_at(const model::TileId& tile) {
@@ -179,7 +179,7 @@ TEST(AreaChanges, PlacesFarFromEachOtherAreReadAlone) {
   };
 
   std::vector<importers::osm::ChangedObject> changes = {changed_at(low), changed_at(high)};
-  AreaChanges found = concerned_tiles(area, reaches, changes, {}, projection);
+  AreaChanges found = concerned_tiles(area, reaches, changes, {}, false, projection);
   EXPECT_EQ(found.why_whole, "");
   EXPECT_TRUE(found.tiles.contains(low) && found.tiles.contains(high) && !found.tiles.contains(between));
   ASSERT_EQ(found.parts.size(), 2u);
@@ -189,7 +189,7 @@ TEST(AreaChanges, PlacesFarFromEachOtherAreReadAlone) {
   EXPECT_EQ(found.window[3], std::max(found.parts[0][3], found.parts[1][3]));
 
   changes[1] = changed_at(beside);
-  found = concerned_tiles(area, reaches, changes, {}, projection);
+  found = concerned_tiles(area, reaches, changes, {}, false, projection);
   EXPECT_EQ(found.parts.size(), 1u);
   for (const model::TileId& t : {low, beside}) EXPECT_EQ(held(found, t), 1);
 
@@ -197,7 +197,7 @@ TEST(AreaChanges, PlacesFarFromEachOtherAreReadAlone) {
   EXPECT_TRUE(found.other_network.empty());
   const double narrow = found.parts[0][2] - found.parts[0][0];
   changes[0].network = true;
-  found = concerned_tiles(area, reaches, changes, {}, projection);
+  found = concerned_tiles(area, reaches, changes, {}, false, projection);
   EXPECT_TRUE(found.other_network.contains(low));
   EXPECT_GT(found.parts[0][2] - found.parts[0][0], narrow);
 
@@ -209,7 +209,41 @@ TEST(AreaChanges, PlacesFarFromEachOtherAreReadAlone) {
       reaches[t] = reach_of(t, 2500, projection);
       changes.push_back(changed_at(t));
     }
-  EXPECT_EQ(concerned_tiles(area, reaches, changes, {}, projection).why_whole, "most of it is concerned");
+  EXPECT_EQ(concerned_tiles(area, reaches, changes, {}, false, projection).why_whole, "most of it is concerned");
+}
+
+TEST(AreaChanges, WhatStandsAroundHousesIsHeardOfNearBy) {
+  const model::TileId area_tile{12, kWest.x >> 3, kWest.y >> 3};
+  const georef::GeoBox bounds = georef::bounds(area_tile);
+  const georef::Crs crs = georef::open_crs("EPSG:25833", bounds);
+  const georef::Projection projection(crs, bounds);
+  TileChoice area;
+  area.id = area_tile;
+  const georef::GeoBox halo = georef::with_halo(area_tile, kHalo);
+  area.window = {halo.west, halo.south, halo.east, halo.north};
+  const std::uint32_t x = area_tile.x << 3, y = area_tile.y << 3;
+  const model::TileId own{15, x + 2, y + 2}, beside{15, x + 3, y + 2}, far{15, x + 5, y + 2};
+  AreaReach reaches;
+  for (const model::TileId& t : {own, beside, far}) {
+    reaches[t] = reach_of(t, 2500, projection);
+    reaches[t].around = reach_of(t, 60, projection).near;
+  }
+  std::vector<importers::osm::ChangedObject> changes = {changed_at(own)};
+  changes[0].building = false, changes[0].is_surrounding = true;
+  const AreaChanges lamp = concerned_tiles(area, reaches, changes, {}, true, projection);
+  EXPECT_EQ(lamp.why_whole, "");
+  EXPECT_EQ(lamp.tiles, (std::set<model::TileId>{own}));
+  // What houses hear of is heard of as far as ever.
+  changes[0].is_surrounding = false;
+  EXPECT_TRUE(concerned_tiles(area, reaches, changes, {}, true, projection).tiles.contains(far));
+  changes[0].is_surrounding = true;
+  // The sea, and what is very wide, reach farther than tiles tell; to houses alone they are any water.
+  changes[0].coast = true;
+  EXPECT_EQ(concerned_tiles(area, reaches, changes, {}, true, projection).why_whole.substr(0, 9), "the coast");
+  EXPECT_EQ(concerned_tiles(area, reaches, changes, {}, false, projection).why_whole, "");
+  changes[0].coast = false;
+  changes[0].box[2] = changes[0].box[0] + 1.5;
+  EXPECT_NE(concerned_tiles(area, reaches, changes, {}, true, projection).why_whole, "");
 }
 
 }  // namespace

@@ -36,6 +36,9 @@ model::Extract lines(const model::TileId& area, std::initializer_list<std::array
                                   static_cast<std::int32_t>(std::lround((box.south + y) * 1e7))});
     feature.rings = {static_cast<std::uint32_t>(extract.rings.size()), 1};
     extract.rings.push_back(ring);
+    feature.kinds = static_cast<std::uint32_t>(model::FeatureKind::street);
+    feature.tags = {static_cast<std::uint32_t>(extract.tags.size()), 1};
+    extract.tags.push_back({extract.strings.intern("highway"), extract.strings.intern("residential")});
     extract.features.push_back(feature);
   }
   return extract;
@@ -47,17 +50,28 @@ TEST(AreaSurroundings, WhatReachesOutOfAnAreaIsShared) {
   const model::Extract extract = lines(
       area,
       {{0.01, 0.01, 0.011, 0.011}, {0.01, 0.01, 0.03, 0.01}, {0.01, 0.001, 0.01, 0.002}, {-0.01, 0.01, 0.01, 0.01}});
+  const surroundings::Catalogue catalogue(std::string(BLOCKRAND_SOURCE_DIR) + "/configs/surroundings.toml");
+  const auto thing_of = thing_recorder(extract, catalogue, {.ground = true, .bodies = true, .objects = true}, area);
+  std::vector<RecordedThing> things;
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(begins_in(extract, extract.features[i], area, false), i < 3);
+    if (i == 3) break;
+    const std::optional<RecordedThing> thing = thing_of(extract.features[i]);
+    ASSERT_TRUE(thing);
+    EXPECT_EQ(thing->kind, static_cast<std::uint8_t>(SurroundingKind::road));
+    EXPECT_EQ(thing->inside, i == 0);
+    things.push_back(*thing);
+  }
+  EXPECT_FALSE(begins_in(extract, {}, area, false));
+  EXPECT_TRUE(begins_in(extract, {}, area, true));
+  EXPECT_FALSE(thing_of(model::Feature())) << "no tag says what it is";
+  EXPECT_FALSE(thing_recorder(extract, catalogue, {}, area)(extract.features[0])) << "no layer is asked for";
   SurroundingAccount account;
-  for (std::int64_t n = 1; n <= 4; ++n) account.take(told(OsmType::way, n, SurroundingKind::road, kModelled));
-  std::vector<std::int64_t> shared;
-  for (const SharedOutcome& o : shared_outcomes(account, extract, area)) shared.push_back(o.object.number);
-  EXPECT_EQ(shared, (std::vector<std::int64_t>{2, 3, 4}));
-
-  const auto begins = begins_in(extract, area, false);
-  EXPECT_TRUE(begins(extract.features[0]) && begins(extract.features[1]) && begins(extract.features[2]));
-  EXPECT_FALSE(begins(extract.features[3]));
-  EXPECT_FALSE(begins(model::Feature()));
-  EXPECT_TRUE(begins_in(extract, area, true)(model::Feature()));
+  for (const std::int64_t n : {1, 2, 4}) account.take(told(OsmType::way, n, SurroundingKind::road, kModelled));
+  std::vector<std::pair<std::int64_t, std::size_t>> shared;
+  for (const SharedOutcome& o : close_surroundings(things, account)) shared.emplace_back(o.object.number, o.state);
+  EXPECT_EQ(shared, (std::vector<std::pair<std::int64_t, std::size_t>>{
+                        {2, kModelled}, {3, surroundings::kElsewhere}, {4, kModelled}}));
 }
 
 TEST(AreaSurroundings, TheWholeCountsWhatIsSharedOnce) {
