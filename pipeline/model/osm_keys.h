@@ -144,6 +144,7 @@ namespace blockrand::model {
   X(kMaterial, "material", "of a wall, a fence, a bench")                                                         \
   X(kFenceType, "fence_type", "what a fence looks like")                                                          \
   X(kDirection, "direction", "where a bench, a sign faces")                                                       \
+  X(kDrivingSide, "driving_side", "on which side of a street vehicles keep")                                      \
   X(kGauge, "gauge", "of a railway, mm")
 // clang-format on
 

@@ -10,6 +10,7 @@
 #include "pipeline/base/error.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/base/toml_file.h"
+#include "pipeline/geometry/plane_partition.h"
 #include "pipeline/surroundings/shapes.h"
 
 namespace blockrand::surroundings {
@@ -177,6 +178,16 @@ Catalogue::Catalogue(const std::string& path) {
     streets_.emplace(name, read_street(table, material_of, shown_.materials));
   if (!streets_.contains("other")) file.fail("street", "has no row `other`", "It holds for all other streets");
 
+  for (TomlTable& table : file.tables("left_hand_traffic")) {
+    if (table.text("place").value_or("").empty()) table.fail("place", "is missing", "Say which place it is");
+    std::vector<model::Point2>& ring = left_hand_.emplace_back();
+    for (const auto& [lon, lat] : table.pairs("polygon").value_or(std::vector<std::pair<double, double>>{}))
+      ring.push_back({lon, lat});
+    if (ring.size() < 3)
+      table.fail("polygon", "encloses nothing", "Write at least three corners as [longitude, latitude]");
+    table.finish();
+  }
+
   for (TomlTable& table : file.tables("ground")) grounds_.push_back(read_ground(table, material_of, shown_.materials));
 
   for (auto& [name, table] : rows_of(file, "shape")) {
@@ -221,6 +232,16 @@ std::optional<model::SurroundingMaterial> Catalogue::surface(std::string_view va
 const StreetDefaults& Catalogue::street(std::string_view highway) const {
   const auto found = streets_.find(highway);
   return found == streets_.end() ? streets_.find("other")->second : found->second;
+}
+
+bool Catalogue::keeps_left(model::Location place) const {
+  constexpr double kUnit = 1e-7;
+  const model::Point2 at{kUnit * place.lon, kUnit * place.lat};
+  return std::ranges::any_of(left_hand_, [&](const std::vector<model::Point2>& ring) {
+    geometry::AreaClaim claim;
+    claim.rings.push_back(ring);
+    return geometry::claim_holds(claim, at);
+  });
 }
 
 const GroundRule* Catalogue::ground_of(const TagOf& tag) const {

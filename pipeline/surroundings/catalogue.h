@@ -72,6 +72,8 @@ class Catalogue {
   std::optional<model::SurroundingMaterial> surface(std::string_view value) const;
   /// The defaults of a value of `highway`: those of "other" for unknown ones.
   const StreetDefaults& street(std::string_view highway) const;
+  /// Whether vehicles keep to the left at a place in degrees: it lies in a place of `left_hand_traffic`.
+  bool keeps_left(model::Location place) const;
   /// The first rule that fits an area's tags; null: none does.
   const GroundRule* ground_of(const TagOf& tag) const;
   /// The first rule that fits an object's tags; null: none does. \param area  the object is an area
@@ -87,6 +89,7 @@ class Catalogue {
   std::string sha256_;
   std::map<std::string, model::SurroundingMaterial, std::less<>> materials_, surfaces_;
   std::map<std::string, StreetDefaults, std::less<>> streets_;
+  std::vector<std::vector<model::Point2>> left_hand_;  ///< rings in degrees
   std::vector<GroundRule> grounds_;
   std::vector<ObjectRule> objects_;
   std::map<std::string, std::vector<std::uint16_t>, std::less<>> shapes_;

@@ -30,6 +30,16 @@ constexpr double kTrackBed = 3.4, kTramBed = 2.6;
 // Of a block, up to the middle of its streets: from where on yards are paved, and gardens are none.
 constexpr double kPavedShare = 0.30, kGardenShare = 0.04;
 
+bool keeps_left(const model::Extract& extract, const model::Feature& feature, const TagOf& tag,
+                const Catalogue& catalogue) {
+  const std::string_view side = tag(osm_key::kDrivingSide);
+  if (side == "left" || side == "right") return side == "left";
+  for (const model::MappedRing& ring : extract.rings_of(feature.rings))
+    if (const auto vertices = extract.vertices_of(ring); !vertices.empty())
+      return catalogue.keeps_left(vertices.front());
+  return false;
+}
+
 /// Strength among claims of one class: a greater one is stronger.
 double strength_of(std::string_view highway) {
   constexpr std::array<std::string_view, 18> kOrder{
@@ -118,6 +128,8 @@ ClaimFinder::ClaimFinder(const SurroundingInputs& inputs) : in_(inputs) {
     const std::optional<SurroundingKind> kind = kind_of(feature, tag, in_.catalogue);
     if (!kind) continue;
     Thing thing{f, *kind, hidden_state(feature, tag)};
+    if (*kind == SurroundingKind::road || *kind == SurroundingKind::bridge)
+      thing.keeps_left = keeps_left(e, feature, tag, in_.catalogue);
     PlanBox box, degrees;
     for (const model::MappedRing& ring : e.rings_of(feature.rings))
       for (const model::Location at : e.vertices_of(ring)) {
@@ -266,17 +278,17 @@ void ClaimFinder::add_street(const Thing& thing, const PlanBox& box, std::vector
     // What stands around is asked piece by piece: a way may be long, and what a place looks like depends on what is near.
     for (const std::vector<Point2>& piece : judged_pieces(line)) {
       if (!geometry::box_of(piece).near(box, kStreetReach)) continue;
-      add_street_piece(feature.id, tag, piece,
-                       piece.front() == line.front() ? end(nodes.front()) : geometry::LineEnd::round,
+      add_street_piece(thing, tag, piece, piece.front() == line.front() ? end(nodes.front()) : geometry::LineEnd::round,
                        piece.back() == line.back() ? end(nodes.back()) : geometry::LineEnd::round, out);
     }
   }
 }
 
-void ClaimFinder::add_street_piece(model::OsmId id, const TagOf& tag, const std::vector<Point2>& line,
+void ClaimFinder::add_street_piece(const Thing& thing, const TagOf& tag, const std::vector<Point2>& line,
                                    geometry::LineEnd start, geometry::LineEnd end, std::vector<Entry>& out) const {
-  const std::optional<StreetProfile> profile = street_profile(tag, is_built_up(line), in_.catalogue);
+  const std::optional<StreetProfile> profile = street_profile(tag, is_built_up(line), in_.catalogue, thing.keeps_left);
   if (!profile) return;
+  const model::OsmId id = in_.extract.features[thing.feature].id;
   // Strips of a class on both sides are one claim from the far side of the one to that of the other: what lies between them
   // is stronger.
   struct Reach {

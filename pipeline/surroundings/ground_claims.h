@@ -37,7 +37,8 @@ struct Thing {
   std::uint32_t feature = 0;  ///< index into Extract::features
   SurroundingKind kind = SurroundingKind::other;
   std::optional<model::SurroundingState> hidden;
-  bool wide = false;  ///< an area that spans more than kWidest
+  bool wide = false;        ///< an area that spans more than kWidest
+  bool keeps_left = false;  ///< vehicles keep to the left: driving_side, else where it begins
 };
 
 /// Whose a piece of ground is.
@@ -143,7 +144,7 @@ class ClaimFinder {
  private:
   struct Entry;
   void add_street(const Thing& thing, const geometry::PlanBox& box, std::vector<Entry>& out) const;
-  void add_street_piece(model::OsmId id, const TagOf& tag, const std::vector<model::Point2>& line,
+  void add_street_piece(const Thing& thing, const TagOf& tag, const std::vector<model::Point2>& line,
                         geometry::LineEnd start, geometry::LineEnd end, std::vector<Entry>& out) const;
   bool crosses_traffic(const BridgeRun& run) const;
   /// An area, or a line that ends where it begins.

@@ -316,7 +316,8 @@ class Bodies {
             line, left, right, [&](std::size_t i) { return std::pair(deck[i], deck[i]); }, takes, false,
             body(BodyClass::bridge, "ballast").faces);
         rails(line, deck);
-      } else if (const std::optional<StreetProfile> profile = street_profile(tag_, true, in_.catalogue)) {
+      } else if (const std::optional<StreetProfile> profile =
+                     street_profile(tag_, true, in_.catalogue, thing_.keeps_left)) {
         if (profile->strips.empty()) return;
         left = profile->strips.front().left, right = profile->strips.back().right;
         for (const StreetStrip& strip : profile->strips)

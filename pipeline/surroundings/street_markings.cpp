@@ -44,7 +44,7 @@ class Markings {
       : site_(site), thing_(thing), tag_(site.claims.tags_of(thing.feature)) {}
 
   std::vector<FlatPolygon> make() {
-    const std::optional<StreetProfile> profile = street_profile(tag_, true, site_.in.catalogue);
+    const std::optional<StreetProfile> profile = street_profile(tag_, true, site_.in.catalogue, thing_.keeps_left);
     if (!profile || profile->carriageway_right - profile->carriageway_left < kStopWidth) return {};
     left_ = profile->carriageway_left, right_ = profile->carriageway_right;
     outer_left_ = left_, outer_right_ = right_;
@@ -249,13 +249,14 @@ class Markings {
     return std::nullopt;
   }
 
-  /// \param sense  1: across the lanes that lead along the line; vehicles keep to the right
+  /// \param sense  1: across the lanes that lead along the line
   void stop_line(const OffsetLine& line, double s, int sense, bool all_lanes, ControlKind kind) {
     const std::optional<Along> at = along(line, s);
     if (!at) return;
     const double middle = (left_ + right_) / 2;
-    const double from = (all_lanes || sense < 0 ? left_ : middle) + kStopInset;
-    const double to = (all_lanes || sense > 0 ? right_ : middle) - kStopInset;
+    const bool right_half = (sense > 0) != thing_.keeps_left;
+    const double from = (all_lanes || !right_half ? left_ : middle) + kStopInset;
+    const double to = (all_lanes || right_half ? right_ : middle) - kStopInset;
     if (to - from < kStopPiece) return;
     if (kind == ControlKind::give_way) {
       for (double side = from + kGiveWayDash / 2; side + kGiveWayDash / 2 <= to; side += kGiveWayPeriod)

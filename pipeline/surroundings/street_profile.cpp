@@ -147,9 +147,9 @@ double pavement_of(const TagOf& tag, Side side, double usual, bool where_untold)
   return told && usual <= 0 ? kPavement : usual;
 }
 
-/// The value of the scheme for a side. `cycleway=lane` is on both sides of a street with two directions, and on the right
-/// hand of the vehicles where there is one; `opposite_lane` is on their left.
-std::string_view cycleway_of(const TagOf& tag, Side side, Traffic traffic) {
+/// The value of the scheme for a side. `cycleway=lane` is on both sides of a street with two directions, and on the side to
+/// which vehicles keep where there is one; `opposite_lane` is on the other.
+std::string_view cycleway_of(const TagOf& tag, Side side, Traffic traffic, bool keeps_left) {
   constexpr std::string_view kOpposite = "opposite_";
   std::string_view value = value_of_side(tag, kCycleways, side);
   const bool sided = !value.empty();
@@ -157,8 +157,8 @@ std::string_view cycleway_of(const TagOf& tag, Side side, Traffic traffic) {
   const bool opposite = value.starts_with(kOpposite);
   if (opposite) value.remove_prefix(kOpposite.size());
   if (sided || (traffic == Traffic::both && !opposite)) return value;
-  const Side right_hand = traffic == Traffic::backward ? Side::left : Side::right;
-  return (side == right_hand) != opposite ? value : std::string_view{};
+  const Side kept = (traffic == Traffic::backward) != keeps_left ? Side::left : Side::right;
+  return (side == kept) != opposite ? value : std::string_view{};
 }
 
 /// What lies on one side of the lanes of a street, m; 0: nothing.
@@ -173,9 +173,9 @@ struct BesideLanes {
   void move_parking_beyond_the_kerb() { parking_bay += std::exchange(parking_lane, 0); }
 };
 
-void add_cycleway(const TagOf& tag, Side side, Traffic traffic, BesideLanes& beside) {
+void add_cycleway(const TagOf& tag, Side side, Traffic traffic, bool keeps_left, BesideLanes& beside) {
   constexpr std::string_view kLanes[] = {"lane", "soft_lane", "buffered_lane"};
-  std::string_view values = cycleway_of(tag, side, traffic);
+  std::string_view values = cycleway_of(tag, side, traffic, keeps_left);
   const auto width = width_of(detail_of_side(tag, kCycleways, side, osm_key::kWidth));
   while (!values.empty()) {
     const std::string_view value = take_until(values, ';');
@@ -319,13 +319,14 @@ class Row {
   StreetProfile& out_;
 };
 
-StreetProfile street(const TagOf& tag, std::string_view highway, bool built_up, const Catalogue& catalogue) {
+StreetProfile street(const TagOf& tag, std::string_view highway, bool built_up, const Catalogue& catalogue,
+                     bool keeps_left) {
   const StreetDefaults& usual = catalogue.street(highway);
   const Traffic traffic = traffic_of(tag, highway);
   BesideLanes left, right;
   for (const Side side : {Side::left, Side::right}) {
     BesideLanes& beside = side == Side::left ? left : right;
-    add_cycleway(tag, side, traffic, beside);
+    add_cycleway(tag, side, traffic, keeps_left, beside);
     add_parking(tag, side, beside);
     beside.pavement = pavement_of(tag, side, usual.pavement, built_up || !usual.built_up_only);
   }
@@ -465,12 +466,13 @@ std::optional<double> length_of(std::string_view text) {
   return *number * unit + inches * kInch;
 }
 
-std::optional<StreetProfile> street_profile(const TagOf& tag, bool built_up, const Catalogue& catalogue) {
+std::optional<StreetProfile> street_profile(const TagOf& tag, bool built_up, const Catalogue& catalogue,
+                                            bool keeps_left) {
   std::string_view highway = tag(osm_key::kHighway);
   if (highway == "trail") highway = "path";  // an older word
   if (is_no_ground(highway)) return std::nullopt;
   const GroundClass ground = ground_of_way(tag, highway);
-  return ground == GroundClass::carriageway ? street(tag, highway, built_up, catalogue)
+  return ground == GroundClass::carriageway ? street(tag, highway, built_up, catalogue, keeps_left)
                                             : way_without_lanes(tag, highway, ground, built_up, catalogue);
 }
 

@@ -32,10 +32,12 @@ struct StreetProfile {
 /// of a lane, else that of the class, less for one direction. Parking lanes (parking:*, parking:lane:*), lanes and tracks for
 /// bicycles (cycleway*) and pavements (sidewalk*) where tagged; where no tag tells, pavements of the class in built-up land.
 /// What is a way of its own (`separate`) is none of this one. footway=sidewalk is a pavement, footway=crossing a footway.
-/// Widths out of bounds (0.3 to 60 m) count as untold. Vehicles keep to the right where a tag does not name the side.
-/// \param built_up  houses stand around
+/// Widths out of bounds (0.3 to 60 m) count as untold.
+/// \param built_up    houses stand around
+/// \param keeps_left  vehicles keep to the left: tells where what has no side lies in a street of one direction
 /// \return nothing for what is no ground: highway=construction, proposed, corridor, elevator, bus_stop …
-std::optional<StreetProfile> street_profile(const TagOf& tag, bool built_up, const Catalogue& catalogue);
+std::optional<StreetProfile> street_profile(const TagOf& tag, bool built_up, const Catalogue& catalogue,
+                                            bool keeps_left = false);
 
 /// A length as tags have it ("3.5", "3,5 m", "350 cm", "12 ft", "7'6\""), m; nothing where it cannot be read, as ranges and
 /// negative ones.

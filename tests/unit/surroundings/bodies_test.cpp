@@ -109,13 +109,14 @@ TEST(Stairs, AreNoneWhereTheWayRisesAndFalls) {
 // ---- stop lines
 
 /// A street from west to east that ends at one from south to north.
-Town junction(const Town::Tags& control, Point2 at = {-12, 0}) {
+Town junction(const Town::Tags& control, Point2 at = {-12, 0},
+              const Town::Tags& of_street = {{"highway", "residential"}, {"width", "6"}}) {
   Town town = town_with_a_house();
   town.point(at, control);
   std::vector<Point2> line{{-80, 0}};
   if (at.x < 0) line.push_back(at);
   line.push_back({0, 0});
-  town.way(2, line, {{"highway", "residential"}, {"width", "6"}});
+  town.way(2, line, of_street);
   town.way(3, {{0, -80}, {0, 0}, {0, 80}}, {{"highway", "residential"}, {"width", "6"}});
   return town;
 }
@@ -131,6 +132,11 @@ TEST(StopLines, LieAcrossTheLanesOfTheDirection) {
   const auto back = BuiltTown(junction({{"highway", "stop"}, {"direction", "backward"}})).corners(BodyClass::marking);
   ASSERT_FALSE(back.empty());
   for (const Point3& p : back) EXPECT_GT(p.y, -0.2);
+  const auto left = BuiltTown(junction({{"highway", "stop"}, {"direction", "forward"}}, {-12, 0},
+                                       {{"highway", "residential"}, {"width", "6"}, {"driving_side", "left"}}))
+                        .corners(BodyClass::marking);
+  ASSERT_FALSE(left.empty());
+  for (const Point3& p : left) EXPECT_GT(p.y, -0.2);
 }
 
 TEST(StopLines, WithoutADirectionAreThoseOfTheNearJunction) {

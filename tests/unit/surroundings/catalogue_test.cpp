@@ -80,6 +80,25 @@ TEST(SurroundingCatalogue, HoldsWhatCodeAndOtherRowsAskFor) {
   EXPECT_EQ(c.surface("cheese"), std::nullopt);
 }
 
+TEST(SurroundingCatalogue, KnowsWhereVehiclesKeepToTheLeft) {
+  const auto left = [](double lon, double lat) {
+    return shipped().keeps_left(
+        {static_cast<std::int32_t>(std::lround(lon * 1e7)), static_cast<std::int32_t>(std::lround(lat * 1e7))});
+  };
+  const std::pair<double, double> lefts[] = {
+      {-0.13, 51.51}, {-8.63, 52.66}, {-5.93, 54.6},   {1.31, 51.13},    {-2.1, 49.19},    {14.51, 35.9},
+      {33.36, 35.17}, {139.7, 35.68}, {141.35, 43.06}, {114.17, 22.32},  {100.5, 13.75},   {98.99, 18.79},
+      {103.85, 1.29}, {106.85, -6.2}, {151.2, -33.87}, {115.86, -31.95}, {174.76, -36.85}, {170.5, -45.87},
+      {77.21, 28.61}, {79.86, 6.93},  {90.4, 23.8},    {67.0, 24.87},    {73.05, 33.68},   {36.82, -1.29},
+      {28.05, -26.2}, {32.58, 0.35},  {32.57, -25.97}};
+  for (const auto& [lon, lat] : lefts) EXPECT_TRUE(left(lon, lat)) << lon << ", " << lat;
+  const std::pair<double, double> rights[] = {
+      {13.4, 52.5},   {7.42, 43.73},   {1.85, 50.95},  {2.35, 48.86},  {-9.14, 38.71},  {-1.62, 49.64}, {4.9, 52.37},
+      {28.96, 41.01}, {126.98, 37.57}, {114.06, 22.6}, {102.6, 17.98}, {104.92, 11.56}, {121.0, 14.6},  {69.2, 34.5},
+      {96.16, 16.8},  {13.23, -8.84},  {30.06, -1.95}, {45.34, 2.04},  {-74, 40.7}};
+  for (const auto& [lon, lat] : rights) EXPECT_FALSE(left(lon, lat)) << lon << ", " << lat;
+}
+
 TEST(SurroundingCatalogue, HasMeasuresOfStreets) {
   const Catalogue& c = shipped();
   EXPECT_EQ(c.street("motorway").width, 12);

@@ -60,12 +60,12 @@ const Catalogue& catalogue() {
   return read;
 }
 
-std::optional<StreetProfile> profile(const Tags& tags, bool built_up = true) {
+std::optional<StreetProfile> profile(const Tags& tags, bool built_up = true, bool keeps_left = false) {
   const TagOf tag = [&](std::string_view key) {
     const auto found = tags.find(key);
     return found == tags.end() ? std::string_view{} : std::string_view(found->second);
   };
-  return street_profile(tag, built_up, catalogue());
+  return street_profile(tag, built_up, catalogue(), keeps_left);
 }
 
 std::string number(double value) {
@@ -329,6 +329,12 @@ TEST(StreetProfile, TheOlderSchemeOfParking) {
 // ---------------------------------------------------------------------------------------------------------- bicycles
 
 TEST(StreetProfile, LanesForBicyclesWidenTheCarriageway) {
+  // Where vehicles keep to the left, what has no side lies there in a street of one direction.
+  const auto one_way = [](bool keeps_left) {
+    return strips(profile(bare({{"oneway", "yes"}, {"cycleway", "track"}}), true, keeps_left));
+  };
+  EXPECT_EQ(one_way(false).find("carriageway"), one_way(false).find_first_not_of("-.0123456789 "));
+  EXPECT_EQ(one_way(true).find("cycle_way"), one_way(true).find_first_not_of("-.0123456789 "));
   const auto right = profile(bare({{"cycleway:right", "lane"}}));
   EXPECT_EQ(strips(right), "-3.925 carriageway 3.925");
   EXPECT_NEAR(right->carriageway_left, -3.925, 1e-9);
