@@ -148,6 +148,7 @@ struct ObjectShape {
   struct Triangles {
     SurroundingMaterial material = 0;
     std::vector<Point3> corners;  ///< three a triangle, counter-clockwise seen from outside
+    bool round = false;           ///< shaded as if it had no edges: crowns, hedges
   };
   std::vector<Triangles> parts;
   Point3 min, max;

@@ -121,6 +121,7 @@ GroundRule read_ground(TomlTable& table, const MaterialOf& material,
     rule.ground = static_cast<model::GroundClass>(found - std::begin(model::kGroundClassNames));
     rule.material = names[material(table, "material")].name;
     rule.trees_per_hectare = table.number("trees_per_hectare", 0, 2000).value_or(0);
+    rule.kerbed = table.boolean("kerbed").value_or(false);
   }
   table.finish();
   return rule;

@@ -46,7 +46,8 @@ struct GroundRule {
   double trees_per_hectare = 0;  ///< that stand in it where none is mapped
   std::string also_key;          ///< a second tag that it must have; empty: none
   std::vector<std::string> also_values;
-  bool none = false;  ///< such areas have no ground of their own: ground_of() is null
+  bool none = false;    ///< such areas have no ground of their own: ground_of() is null
+  bool kerbed = false;  ///< lies lower than what is beside it, as carriageways do
 };
 
 /// When a shape is the one that is meant among those of its kind.

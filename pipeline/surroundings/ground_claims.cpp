@@ -21,11 +21,13 @@ namespace osm_key = model::osm_key;
 
 // m. Widths of waters that nobody measured: half of what the wiki of OpenStreetMap calls usual is seen from a bridge.
 constexpr double kRiverWidth = 12, kCanalWidth = 8, kStreamWidth = 2, kDitchWidth = 1;
-/// m. Beds of a track: ballast of standard gauge is 3 to 4 m wide at its top (Deutsche Bahn, Ril 800.0130: 3.1 to 3.8 m).
 /// m: how much of a street is judged at a time: whether it is one of a town. A block is as long.
 constexpr double kJudgedPiece = 150;
 /// Of one segment: ways across oceans are no streets.
 constexpr double kMostCuts = 2000;
+/// m: how far a pavement reaches beyond its usual width to a house that stands a little farther away [E].
+constexpr double kForecourt = 2;
+/// m. Beds of a track: ballast of standard gauge is 3 to 4 m wide at its top (Deutsche Bahn, Ril 800.0130: 3.1 to 3.8 m).
 constexpr double kTrackBed = 3.4, kTramBed = 2.6;
 // Of a block, up to the middle of its streets: from where on yards are paved, and gardens are none.
 constexpr double kPavedShare = 0.30, kGardenShare = 0.04;
@@ -98,7 +100,8 @@ struct ClaimFinder::Entry {
 
 namespace {
 
-constexpr int kPassageRank = 0, kBuildingRank = 1, kFirstGroundRank = 2, kSeaRank = 999, kBlockRank = 1000;
+constexpr int kPassageRank = 0, kBuildingRank = 1, kFirstGroundRank = 2, kSeaRank = 998, kForecourtRank = 999,
+              kBlockRank = 1000;
 
 int rank_of(GroundClass ground) { return kFirstGroundRank + static_cast<int>(ground); }
 
@@ -294,16 +297,26 @@ void ClaimFinder::add_street_piece(const Thing& thing, const TagOf& tag, const s
   struct Reach {
     const StreetStrip* strip = nullptr;
     double left = 0, right = 0;
+    bool beyond = false;  ///< what a pavement has beyond its width where nothing is mapped
   };
   std::vector<Reach> reaches;
   for (const StreetStrip& strip : profile->strips) {
     auto known = std::ranges::find_if(reaches, [&](const Reach& r) {
       return r.strip->ground == strip.ground && r.strip->material == strip.material;
     });
-    if (known == reaches.end()) known = reaches.insert(known, {&strip, 0, 0});
+    if (known == reaches.end()) known = reaches.insert(known, {&strip, 0, 0, false});
     known->left = std::max(known->left, -strip.left), known->right = std::max(known->right, strip.right);
   }
-  for (const Reach& reach : reaches) {
+  // Pavements reach to the houses: strips of land between them would be less than a step wide. Whatever is mapped there is stronger.
+  std::vector<Reach> claims = reaches;
+  for (Reach forecourt : reaches) {
+    if (forecourt.strip->ground != GroundClass::pavement) continue;
+    if (forecourt.left > 0) forecourt.left += kForecourt;
+    if (forecourt.right > 0) forecourt.right += kForecourt;
+    forecourt.beyond = true;
+    claims.push_back(forecourt);
+  }
+  for (const Reach& reach : claims) {
     if (reach.left <= 0 && reach.right <= 0) continue;
     const GroundClass ground = reach.strip->ground;
     const bool is_lane = ground == GroundClass::carriageway || ground == GroundClass::parking_lane;
@@ -315,6 +328,10 @@ void ClaimFinder::add_street_piece(const Thing& thing, const TagOf& tag, const s
       Entry entry;
       entry.rank = rank_of(ground);
       entry.strength = strength_of(tag(osm_key::kHighway)) + 1e-3 * (reach.left + reach.right);
+      if (reach.beyond) entry.rank = kForecourtRank;
+      // A crossing is that of a carriageway: it does not reach into the pavements beside.
+      if (ground == GroundClass::footway && tag(osm_key::kFootway) == "crossing")
+        entry.rank = rank_of(GroundClass::pavement), entry.strength = -1;
       entry.label = {.ground = ground,
                      .object = id,
                      .material = reach.strip->material,
@@ -390,7 +407,8 @@ void ClaimFinder::add_area(const Thing& thing, std::vector<Entry>& out) const {
   if (rule->ground == GroundClass::water) entry.label.offset = -kBank;
   // Of area:highway the value is the class of its street.
   const std::string_view street = tag(osm_key::kAreaHighway);
-  if (rule->ground == GroundClass::carriageway && in_.catalogue.street(street.empty() ? "residential" : street).kerbed)
+  if (rule->kerbed || (rule->ground == GroundClass::carriageway &&
+                       in_.catalogue.street(street.empty() ? "residential" : street).kerbed))
     entry.label.offset = -kKerb;
   if (rule->ground == GroundClass::swimming_pool) entry.label.offset = -0.1f;
   double area = 0;

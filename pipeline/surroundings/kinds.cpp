@@ -55,7 +55,9 @@ std::optional<SurroundingKind> kind_of(const model::Feature& feature, const TagO
   const std::string_view highway = tag(osm_key::kHighway), rail = tag(osm_key::kRailway),
                          amenity = tag(osm_key::kAmenity);
   if (is_of(highway, kNotThere) && highway != "corridor" && highway != "elevator") return std::nullopt;
-  if (is_of(rail, kNotThere) || rail == "station" || rail == "halt" || rail == "stop") return std::nullopt;
+  // A street on the bed of an abandoned railway is a street.
+  if (highway.empty() && (is_of(rail, kNotThere) || rail == "station" || rail == "halt" || rail == "stop"))
+    return std::nullopt;
   if (feature.is(FeatureKind::street) && !highway.empty()) {
     if (is_bridge(tag)) return bridge;
     const std::string_view tunnel_value = tag(osm_key::kTunnel);

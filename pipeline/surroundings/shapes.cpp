@@ -150,6 +150,7 @@ class Part {
     if (!profile || profile->size() < 2) table_.fail("rings", "needs two rings", "Write it like [[0.5, 0], [0, 2]]");
     const std::size_t n = sides(3);
     const double uneven = table_.number("uneven", 0, 0.5).value_or(0), angle = turn();
+    uneven_ = uneven > 0;
     const bool open = table_.boolean("open").value_or(false);
     std::vector<Ring> rings;
     for (std::size_t i = 0; i < profile->size(); ++i) {
@@ -173,6 +174,7 @@ class Part {
     const Point3 at = place("at");
     const double radius = measure("radius", 0.01, kReach), height = measure("height", 0.01, kReach);
     const double uneven = table_.number("uneven", 0, 0.5).value_or(0), angle = turn();
+    uneven_ = uneven > 0;
     // An icosahedron that stands on a corner: its rings lie at 1/sqrt(5) of its half height.
     const double ring = height / 2 / std::sqrt(5.0), lift = uneven * height / 4;
     std::vector<Ring> rings = {{at - Point3{0, 0, height / 2}},
@@ -267,14 +269,16 @@ class Part {
   std::uint64_t number_;
 
  public:
-  Corners back_;  ///< of a plate
+  Corners back_;         ///< of a plate
+  bool uneven_ = false;  ///< it has no edges of its own
 };
 
-void add_part(model::ObjectShape& shape, model::SurroundingMaterial material, const Corners& corners) {
+void add_part(model::ObjectShape& shape, model::SurroundingMaterial material, const Corners& corners, bool round) {
   if (corners.empty()) return;
   auto part =
       std::find_if(shape.parts.begin(), shape.parts.end(), [&](const auto& p) { return p.material == material; });
-  if (part == shape.parts.end()) part = shape.parts.insert(part, {material, {}});
+  if (part == shape.parts.end()) part = shape.parts.insert(part, {material, {}, round});
+  part->round = part->round && round;
   for (const Point3 p : corners) part->corners.push_back(model::snap(p));
 }
 
@@ -295,8 +299,8 @@ model::ObjectShape read_shape(TomlTable& table, const std::string& name, const M
   for (TomlTable& row : table.tables("parts")) {
     Part part(row, shape.name, number++);
     const Corners corners = part.make();
-    add_part(shape, material(row, "material"), corners);
-    if (!part.back_.empty()) add_part(shape, material(row, "back"), part.back_);
+    add_part(shape, material(row, "material"), corners, part.uneven_);
+    if (!part.back_.empty()) add_part(shape, material(row, "back"), part.back_, false);
     row.finish();
   }
   if (shape.parts.empty()) table.fail("parts", "has nothing", "Give one part at least");

@@ -354,8 +354,7 @@ StreetProfile street(const TagOf& tag, std::string_view highway, bool built_up, 
   row.add(GroundClass::pavement, right.pavement,
           material_of_side(tag, kSidewalks, Side::right, of_pavements, catalogue));
 
-  // Outside of built-up land a verge lies beside the carriageway at its own height.
-  out.kerbed = usual.kerbed && (built_up || left.pavement > 0 || right.pavement > 0);
+  out.kerbed = usual.kerbed;
   if (const auto told = lanes_told(tag); told && *told == static_cast<int>(*told)) out.lanes = static_cast<int>(*told);
   return out;
 }

@@ -76,7 +76,8 @@ bool found_at(Point2 p, const geometry::AreaClaim& claim, const GroundLabel& lab
 
 /// Where a mapped thing stands that the carriageway, as wide as it is assumed to be, has swallowed: at the nearest kerb, if that is near.
 /// Bollards and gates stand where vehicles go.
-Point2 beside_traffic(Point2 place, std::string_view kind, const GroundAtPlace& ground) {
+/// \param on_street  it is mapped as a point of the street itself, whose middle that is
+Point2 beside_traffic(Point2 place, std::string_view kind, bool on_street, const GroundAtPlace& ground) {
   using enum model::GroundClass;
   const auto is_traffic = [](const GroundAt& at) {
     return !at.building && (at.ground == carriageway || at.ground == parking_lane || at.ground == cycle_way);
@@ -89,8 +90,10 @@ Point2 beside_traffic(Point2 place, std::string_view kind, const GroundAtPlace& 
                                          {-1, 0}, {-kCosine, -kHalf}, {-kDiagonal, -kDiagonal}, {-kHalf, -kCosine},
                                          {0, -1}, {kHalf, -kCosine},  {kDiagonal, -kDiagonal},  {kCosine, -kHalf}};
   constexpr double kStep = 0.5, kBehindKerb = 0.4;
-  constexpr int kMostSteps = 7;  // a lane: what stands farther in stands on an island that nobody mapped
-  for (int step = 1; step <= kMostSteps; ++step)
+  constexpr int kLane = 7;         // what stands farther in stands on an island that nobody mapped
+  constexpr int kHalfStreet = 26;  // half of the widest street, to its corner at a junction
+  const int most = on_street ? kHalfStreet : kLane;
+  for (int step = 1; step <= most; ++step)
     for (const auto& d : kDirections) {
       const double r = step * kStep;
       const GroundAt at = ground({place.x + r * d[0], place.y + r * d[1]});
@@ -251,7 +254,10 @@ model::Surroundings SurroundingsFinder::around(model::TileId tile) const {
     if (along) {
       object.object.turn = static_cast<float>(*along);
     } else {
-      object.place = beside_traffic(object.place, in_.catalogue.shown().shapes[object.object.shape].kind, ground_at);
+      object.place = beside_traffic(
+          object.place, in_.catalogue.shown().shapes[object.object.shape].kind,
+          object.object.object.type == model::OsmType::node && claims_.streets_at(object.object.object.number) > 0,
+          ground_at);
     }
     const GroundAt ground = ground_at(object.place);
     if (ground.building) {

@@ -44,7 +44,9 @@ struct Mesh {
   std::vector<MeshPrimitive> pieces;      ///< of elements, apart from solids
   std::size_t solid_positions = 0;        ///< how many positions, the first ones, are those of solids
   std::vector<model::Point2> plan;        ///< of the positions in the build CRS; empty where no ground is textured
-  model::Point3 min, max;                 ///< of the positions
+  std::vector<std::array<double, 2>>
+      courses;  ///< by feature: cosine and sine of the direction of a ground's texture; others lie along the axes
+  model::Point3 min, max;  ///< of the positions
   std::size_t triangles = 0;
   bool empty() const { return primitives.empty() && pieces.empty(); }
 };

@@ -60,6 +60,18 @@ std::vector<std::uint32_t> faces_of(const MeshPrimitive& p) {
   return face;
 }
 
+/// Cosine and sine of the direction along which the ground of a vertex is laid.
+std::array<double, 2> course_of(const Mesh& mesh, const MeshVertex& vertex) {
+  return vertex.feature < mesh.courses.size() ? mesh.courses[vertex.feature] : std::array<double, 2>{1, 0};
+}
+
+/// Repeats of a texture of the ground, from the origin of the build CRS.
+std::array<double, 2> on_ground(const Mesh& mesh, const MeshVertex& vertex, const textures::TextureRow& texture) {
+  const auto [cosine, sine] = course_of(mesh, vertex);
+  const model::Point2& p = mesh.plan[vertex.position];
+  return {(cosine * p.x + sine * p.y) / texture.width, (cosine * p.y - sine * p.x) / texture.height};
+}
+
 }  // namespace
 
 /// How a texture lies on a face: two directions and where they count from, in repeats.
@@ -205,7 +217,8 @@ std::vector<MeshPrimitive> SurfaceTextures::split(const MeshPrimitive& all, cons
       continue;
     }
     if (of_ == Of::ground) {
-      face.layout.right = {1, 0, 0};
+      const auto [cosine, sine] = course_of(mesh, vertex);
+      face.layout.right = {cosine, sine, 0};
     } else {
       face.layout = layout_of(face.row, vertex, face.normal, position(v));
     }
@@ -218,8 +231,7 @@ std::vector<MeshPrimitive> SurfaceTextures::split(const MeshPrimitive& all, cons
     if (face.row < 0) continue;
     const textures::TextureRow& texture = set_.row(face.row);
     const std::uint32_t at = all.vertices[v].position;
-    repeats[v] = of_ == Of::ground ? std::array{mesh.plan[at].x / texture.width, mesh.plan[at].y / texture.height}
-                                   : face.layout.at(mesh.positions[at]);
+    repeats[v] = of_ == Of::ground ? on_ground(mesh, all.vertices[v], texture) : face.layout.at(mesh.positions[at]);
     for (std::size_t k = 0; k < 2; ++k) {
       face.low[k] = std::min(face.low[k], repeats[v][k]);
       face.high[k] = std::max(face.high[k], repeats[v][k]);

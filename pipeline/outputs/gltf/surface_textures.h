@@ -2,7 +2,7 @@
 //
 // Walls: courses are level and start at the ground of the building part; along the outline they run on around its corners, and
 // are stretched by a few per mille so that the last meets the first. Roofs: rows follow the slope up from the lowest point
-// of their plane. Flat roofs: along the longest wall. Ground: along the axes of the build CRS, through all tiles alike.
+// of their plane. Flat roofs: along the longest wall. Ground: along the axes of the build CRS, through all tiles alike; paving of a street along it.
 #pragma once
 
 #include <array>

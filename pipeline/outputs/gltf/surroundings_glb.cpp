@@ -16,6 +16,7 @@
 #include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/triangulate.h"
+#include "pipeline/model/vector.h"
 #include "pipeline/outputs/gltf/axes.h"
 #include "pipeline/outputs/gltf/document_head.h"
 #include "pipeline/outputs/gltf/glb_document.h"
@@ -104,12 +105,34 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const FlatPolygon& face) 
   return geometry::triangulate_touching(plan, loops).value_or(std::vector<geometry::Triangle>());
 }
 
+/// Twice the area of a triangle along its normal.
+Point3 normal_of(const Point3& a, const Point3& b, const Point3& c) {
+  const Point3 u{b.x - a.x, b.y - a.y, b.z - a.z}, v{c.x - a.x, c.y - a.y, c.z - a.z};
+  return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+}
+double length_of(const Point3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+
+/// By corner: of all triangles that have it.
+std::map<std::array<double, 3>, Point3> sums_of_normals(const model::ObjectShape::Triangles& part) {
+  std::map<std::array<double, 3>, Point3> out;
+  for (std::size_t t = 0; t + 2 < part.corners.size(); t += 3) {
+    const Point3 n = normal_of(part.corners[t], part.corners[t + 1], part.corners[t + 2]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Point3& p = part.corners[t + k];
+      Point3& sum = out[{p.x, p.y, p.z}];
+      sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z};
+    }
+  }
+  return out;
+}
+
 /// Collects faces as a mesh.
 class MeshMaker {
  public:
   MeshMaker(const model::SurroundingCatalogue& catalogue, const Frame& frame) : catalogue_(catalogue), frame_(frame) {}
 
-  void add(const FlatPolygon& face, model::SurroundingMaterial material, std::uint32_t row) {
+  /// \param round  shaded as if it had no edges
+  void add(const FlatPolygon& face, model::SurroundingMaterial material, std::uint32_t row, bool round = false) {
     const auto triangles = triangles_of(face);
     if (triangles.empty()) return;
     std::vector<Point3> points = face.outer;
@@ -117,7 +140,7 @@ class MeshMaker {
     std::vector<std::uint32_t> positions;
     for (const Point3& p : points) positions.push_back(position(p));
     for (const auto& t : triangles) {
-      corners_.push_back({{positions[t[0]], positions[t[1]], positions[t[2]]}, row, material});
+      corners_.push_back({{positions[t[0]], positions[t[1]], positions[t[2]]}, row, material, round});
     }
   }
 
@@ -142,17 +165,23 @@ class MeshMaker {
     };
     std::vector<MeshVertex> vertices;
     bool first = true;
+    const auto normal_at = [&](const Corners& c) {
+      return normal_of(mesh.positions[c.at[0]], mesh.positions[c.at[1]], mesh.positions[c.at[2]]);
+    };
+    std::unordered_map<std::uint32_t, Point3> round;  // by position
+    for (const Corners& c : corners_)
+      for (const std::uint32_t at : c.at)
+        if (c.round) round[at] = round[at] + normal_at(c);
     for (const Corners& c : corners_) {
-      const Point3 &a = mesh.positions[c.at[0]], &b = mesh.positions[c.at[1]], &d = mesh.positions[c.at[2]];
-      const Point3 u{b.x - a.x, b.y - a.y, b.z - a.z}, v{d.x - a.x, d.y - a.y, d.z - a.z};
-      const Point3 n{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
-      const double length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
-      if (!(length > 0)) continue;
-      const auto byte = [&](double value) { return static_cast<std::int8_t>(std::lround(value / length * 127)); };
+      const Point3 flat = normal_at(c);
+      if (!(length_of(flat) > 0)) continue;
       if (open.vertices.size() + 3 > MeshPrimitive::kMostVertices) close();
       for (const std::uint32_t at : c.at) {
         MeshVertex vertex;
         vertex.position = at, vertex.feature = c.row;
+        const Point3 n = c.round && length_of(round[at]) > 0 ? round[at] : flat;
+        const double length = length_of(n);
+        const auto byte = [&](double value) { return static_cast<std::int8_t>(std::lround(value / length * 127)); };
         vertex.normal = {byte(n.x), byte(n.y), byte(n.z)};
         vertex.look = {static_cast<std::uint8_t>(c.material), catalogue_.materials[c.material].colour};
         // Position, normal and material make a vertex; of one place there are few rows.
@@ -184,6 +213,7 @@ class MeshMaker {
     std::array<std::uint32_t, 3> at{};
     std::uint32_t row = 0;
     model::SurroundingMaterial material = 0;
+    bool round = false;
   };
   struct Hash {
     std::size_t operator()(const Point3& p) const {
@@ -327,16 +357,17 @@ class ShapeWriter {
     std::array<std::array<double, 3>, 2> bounds{};
     std::map<std::tuple<std::array<float, 3>, std::array<std::int8_t, 3>, model::SurroundingMaterial>, std::uint16_t>
         known;
-    for (const model::ObjectShape::Triangles& part : form.parts)
+    for (const model::ObjectShape::Triangles& part : form.parts) {
+      const std::map<std::array<double, 3>, Point3> round = part.round ? sums_of_normals(part) : decltype(round)();
       for (std::size_t t = 0; t + 2 < part.corners.size(); t += 3) {
         const Point3 &a = part.corners[t], &b = part.corners[t + 1], &c = part.corners[t + 2];
-        const Point3 u{b.x - a.x, b.y - a.y, b.z - a.z}, v{c.x - a.x, c.y - a.y, c.z - a.z};
-        const Point3 n{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
-        const double length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
-        if (!(length > 0) || known.size() + 3 > MeshPrimitive::kMostVertices) continue;
-        const auto byte = [&](double value) { return static_cast<std::int8_t>(std::lround(value / length * 127)); };
-        const std::array<std::int8_t, 3> normal = y_up(byte(n.x), byte(n.y), byte(n.z));
+        const Point3 n = normal_of(a, b, c);
+        if (!(length_of(n) > 0) || known.size() + 3 > MeshPrimitive::kMostVertices) continue;
         for (const Point3* p : {&a, &b, &c}) {
+          const Point3 own = part.round ? round.at({p->x, p->y, p->z}) : n;
+          const double length = length_of(own) > 0 ? length_of(own) : 1;
+          const auto byte = [&](double value) { return static_cast<std::int8_t>(std::lround(value / length * 127)); };
+          const std::array<std::int8_t, 3> normal = y_up(byte(own.x), byte(own.y), byte(own.z));
           std::array<float, 3> at{};
           const std::array<double, 3> xyz = y_up(p->x, p->y, p->z);
           for (std::size_t k = 0; k < 3; ++k)
@@ -361,6 +392,7 @@ class ShapeWriter {
         }
         ++triangles;
       }
+    }
     if (triangles == 0) return -1;
     std::string json = "{\"primitives\":[{\"attributes\":{";
     const std::size_t n = known.size();
@@ -401,6 +433,70 @@ nlohmann::ordered_json metadata(GlbDocument& document, const PropertyTable& tabl
 
 }  // namespace
 
+namespace {
+
+/// Whether what covers a ground is laid along its sides.
+bool is_laid_along(model::GroundClass ground) {
+  using enum model::GroundClass;
+  constexpr model::GroundClass kLaid[] = {carriageway, parking_lane, steps,  cycle_way, platform,
+                                          footway,     pavement,     square, parking};
+  return std::ranges::find(kLaid, ground) != std::end(kLaid);
+}
+
+/// The directions along which most of the sides of grounds lead, or across, in steps of kStep: nearly the same in the tile beside.
+class CourseFinder {
+ public:
+  void add(std::uint32_t row, const std::vector<FlatPolygon>& faces) {
+    if (sums_.size() <= row) sums_.resize(row + 1);
+    for (const FlatPolygon& face : faces)
+      for (std::size_t i = 0; i < face.outer.size(); ++i) {
+        const Point3 &a = face.outer[i], &b = face.outer[(i + 1) % face.outer.size()];
+        const double dx = b.x - a.x, dy = b.y - a.y, length = std::hypot(dx, dy);
+        // Sides along squares and triangles of the terrain are cuts.
+        if (!(length > 0) || dx == 0 || dy == 0 || std::fabs(dx) == std::fabs(dy)) continue;
+        const double c = dx / length, s = dy / length, c2 = c * c - s * s, s2 = 2 * c * s;
+        sums_[row][0] += length * (c2 * c2 - s2 * s2), sums_[row][1] += length * (2 * c2 * s2);
+      }
+  }
+  std::vector<std::array<double, 2>> take() const {
+    std::vector<std::array<double, 2>> out;
+    for (const auto& [x, y] : sums_) {
+      const double angle = x == 0 && y == 0 ? 0 : base::atan2(y, x) / 4;
+      const base::SinCos turn = base::sin_cos(std::nearbyint(angle / kStep) * kStep);
+      out.push_back({turn.cos, turn.sin});
+    }
+    return out;
+  }
+
+ private:
+  static constexpr double kStep = 2 * base::kRadiansPerDegree;
+  std::vector<std::array<double, 2>> sums_;  ///< by row: lengths of sides at four times their angles
+};
+
+/// Whether the edges of a ground are stones; where land lies higher than a road there are none.
+bool has_kerb_stones(model::GroundClass ground) {
+  using enum model::GroundClass;
+  constexpr model::GroundClass kBare[] = {wood, scrub, field, sand, rock, construction, golf, land, pitch};
+  return std::ranges::find(kBare, ground) == std::end(kBare);
+}
+
+/// What is seen from above of the stone of a kerb, from the upper edge of its face inwards. Nothing for other steps: banks, walls.
+std::optional<FlatPolygon> top_of_kerb(const FlatPolygon& face) {
+  // m [DIN EN 1340, DIN 483: kerb stones are 10 to 18 cm wide]. Its far side lies over the ground behind it, which may rise.
+  constexpr double kWidth = 0.12, kOver = 0.015, kHighest = 0.2;
+  if (face.outer.size() != 4) return std::nullopt;
+  const Point3 &a_low = face.outer[0], &b_low = face.outer[1], &b = face.outer[2], &a = face.outer[3];
+  const double rise = std::max(a.z - a_low.z, b.z - b_low.z), dx = b.x - a.x, dy = b.y - a.y,
+               length = std::hypot(dx, dy);
+  if (!(rise > 0) || rise > kHighest || !(length > 0)) return std::nullopt;
+  const double x = -dy / length * kWidth, y = dx / length * kWidth;
+  return FlatPolygon{
+      {a, b, model::snap(Point3{b.x + x, b.y + y, b.z + kOver}), model::snap(Point3{a.x + x, a.y + y, a.z + kOver})},
+      {}};
+}
+
+}  // namespace
+
 std::optional<double> lowest_point(const model::Surroundings& surroundings) {
   std::optional<double> low;
   const auto see = [&](const FlatPolygon& face) {
@@ -427,10 +523,16 @@ Glb write_surroundings_glb(const model::Surroundings& surroundings, const model:
       if (catalogue.materials[m].name == "kerb_stone") return static_cast<model::SurroundingMaterial>(m);
     return model::SurroundingMaterial{0};
   }();
+  CourseFinder courses;
   for (const model::GroundSurface& s : surroundings.surfaces) {
     const std::uint32_t row = rows.of(s.object, model::name(s.ground), catalogue.materials[s.material].name);
     for (const FlatPolygon& face : s.faces) maker.add(face, s.material, row);
-    for (const FlatPolygon& face : s.edges) maker.add(face, kerb, row);
+    if (is_laid_along(s.ground)) courses.add(row, s.faces);
+    const bool stone = has_kerb_stones(s.ground);
+    for (const FlatPolygon& face : s.edges) {
+      maker.add(face, stone ? kerb : s.material, row);
+      if (const std::optional<FlatPolygon> top = stone ? top_of_kerb(face) : std::nullopt) maker.add(*top, kerb, row);
+    }
   }
   for (const model::SurroundingBody& b : surroundings.bodies) {
     const std::uint32_t row = rows.of(b.object, model::name(b.body), catalogue.materials[b.material].name);
@@ -445,7 +547,7 @@ Glb write_surroundings_glb(const model::Surroundings& surroundings, const model:
     for (const auto& part : shape.parts)
       for (std::size_t t = 0; t + 2 < part.corners.size(); t += 3)
         maker.add({{placed(o, part.corners[t]), placed(o, part.corners[t + 1]), placed(o, part.corners[t + 2])}, {}},
-                  part.material, object_rows.back());
+                  part.material, object_rows.back(), part.round);
   }
   if (rows.size() > (1u << 24)) throw std::length_error("too many objects for one GLB");
   glb.rows = rows.size();
@@ -454,6 +556,7 @@ Glb write_surroundings_glb(const model::Surroundings& surroundings, const model:
     for (const auto& m : catalogue.materials) classes.push_back({m.name, m.roughness, m.metallic});
     const MaterialTable materials(classes);
     Mesh mesh = maker.take(options.textures != nullptr);
+    if (options.textures != nullptr) mesh.courses = courses.take();
     const int material = document.add_material(materials.material_json(document.add_texture(materials.png())));
     bool first = true;
     if (!mesh.empty()) {

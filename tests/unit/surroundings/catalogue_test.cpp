@@ -102,7 +102,13 @@ TEST(SurroundingCatalogue, KnowsWhereVehiclesKeepToTheLeft) {
 TEST(SurroundingCatalogue, HasMeasuresOfStreets) {
   const Catalogue& c = shipped();
   EXPECT_EQ(c.street("motorway").width, 12);
-  EXPECT_FALSE(c.street("motorway").kerbed);
+  // Where vehicles go from one to the other, there is no step across.
+  for (const char* highway : {"motorway", "residential", "living_street", "service", "track"})
+    EXPECT_TRUE(c.street(highway).kerbed) << highway;
+  EXPECT_TRUE(c.ground_of([](std::string_view key) {
+                 return key == "amenity" ? std::string_view("parking") : std::string_view();
+               })->kerbed);
+  EXPECT_FALSE(c.street("footway").kerbed);
   EXPECT_GT(c.street("primary").width, c.street("residential").width);
   EXPECT_GT(c.street("residential").pavement, 0);
   EXPECT_EQ(&c.street("what_nobody_maps"), &c.street("other"));
