@@ -16,6 +16,7 @@
 #include "pipeline/cli/errors.h"
 #include "pipeline/cli/exit_codes.h"
 #include "pipeline/cli/publish_command.h"
+#include "pipeline/cli/region_owner.h"
 #include "pipeline/cli/signals.h"
 #include "pipeline/compare/compare.h"
 #include "pipeline/compare/comparison_report.h"
@@ -218,6 +219,7 @@ run::ReferenceVerdict compare_with_reference(const settings::Settings& s, const 
 }
 
 run::UpdateOptions update_options(const settings::Settings& s, std::string sha256, base::Progress& progress) {
+  warn_of_root(s.region, progress);
   run::UpdateOptions options;
   options.folder = run::RegionFolder(s.region).path();
   options.inputs = s.data;
@@ -382,8 +384,23 @@ std::string told_as_json(const nlohmann::ordered_json& j) {
   return j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
+/// Whether a region has no plan: the night had nothing to build, or is finished. Said, and no error.
+bool has_no_plan(const settings::Settings& s) {
+  const run::RegionFolder region(s.region);
+  if (!region.exists() || run::plan_status(region)) return false;
+  if (s.log_format == base::LogFormat::json)
+    std::fputs(told_as_json({{"state", "nothing"}}).c_str(), stdout);
+  else if (!s.quiet)
+    std::fputs(
+        fmt::format(
+            "nothing to do: {} has no plan. Either nothing was to be built when one was asked for, or it is finished\n",
+            s.region)
+            .c_str(),
+        stdout);
+  return true;
+}
+
 int work(const settings::Settings& s, const run::UpdateOptions& options, base::Progress& progress) {
-  if (s.shard.empty()) throw base::UsageError("region work needs --shard I/N: one of those that the plan has");
   const run::SharedWork done = run::work_on_region(options, run::parse_shard(s.shard), progress);
   progress.end();
   if (s.log_format == base::LogFormat::json)
@@ -437,6 +454,9 @@ int run_region(const std::vector<std::string>& arguments) {
   }
   run::UpdateOptions options = update_options(s, std::move(sha256), progress);
   if (s.region_work == "plan") return plan(s, options, progress);
+  if (s.region_work == "work" && s.shard.empty())
+    throw base::UsageError("region work needs --shard I/N: one of those that the plan has");
+  if (has_no_plan(s)) return kSuccess;
   if (s.region_work == "work") return work(s, options, progress);
   const run::UpdateSummary summary = run::finish_region(options, progress);
   progress.end();

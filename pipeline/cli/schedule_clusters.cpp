@@ -114,6 +114,8 @@ night={0}/log/nights/$JOB_NAME
 mkdir -p "$night"
 # The first pod plans the night, the others wait for it.
 if [ "$JOB_COMPLETION_INDEX" = 0 ] && [ ! -e "$night/planned" ]; then
+  # A plan that is left is that of a night that ended in the middle: no other job is at work (concurrencyPolicy).
+  [ ! -e {0}/plan ] || blockrand region drop {0} --break-lock
   blockrand region plan {0} --shards {1}
   touch "$night/planned"
 fi
@@ -213,16 +215,20 @@ std::vector<ScheduleFile> slurm_files(const Schedule& s) {
   // Where one ends badly, those that wait for it go as well.
   const std::string after = " --kill-on-invalid-dep=yes --dependency=";
   std::string out = fmt::format(
-      "#!/bin/sh\n# Submits a night of the region {}: plan, work in {} jobs at the same time, finish.\n"
+      "#!/bin/sh\n# Submits a night of the region {0}: plan, work in {1} jobs at the same time, finish.\n"
       "# Every night, where the cluster has scrontab (scrontab -e), or in the crontab of a login node:\n"
-      "#   {} {} * * * sh /path/of/this/file\n"
+      "#   {2} {3} * * * sh /path/of/this/file\n"
       "# What all nodes must see: the program, the region, and the folder that this was written in. Memory and cores "
       "of a "
       "job are\n# those of the partition, unless SBATCH_… in the environment or options beside --job-name say others.\n"
-      "set -eu\nmkdir -p {}\nfind {} -name 'slurm-*.txt' -mtime +30 -delete\n\n",
-      s.name, s.shards, s.minute, s.hour, quoted_for_sh(log), quoted_for_sh(log));
+      "set -eu\nmkdir -p {4}\nfind {4} -name 'slurm-*.txt' -mtime +30 -delete\n"
+      "if [ -n \"$(squeue --noheader --name={5}-plan,{5}-work,{5}-finish)\" ]; then\n"
+      "  echo 'the night before is still at work: nothing is submitted' >&2\n  exit 1\nfi\ntouch {4}/slurm-night\n\n",
+      s.name, s.shards, s.minute, s.hour, quoted_for_sh(log), quoted_for_sh(name));
   out += job("plan", name + "-plan", "--requeue " + common("plan", "%j"),
-             fmt::format("{}exec {} region plan {} --shards {}\n", enter, program, region, s.shards));
+             fmt::format("{0}# A plan that is left is that of a night of which a job was lost.\n"
+                         "[ ! -e {2}/plan ] || {1} region drop {2}\nexec {1} region plan {2} --shards {3}\n",
+                         enter, program, region, s.shards));
   out += job(
       "work", name + "-work",
       fmt::format("--requeue --array=1-{}{}\"afterok:$plan\" {}", s.shards, after, common("work", "%A_%a")),
@@ -232,13 +238,17 @@ std::vector<ScheduleFile> slurm_files(const Schedule& s) {
                          too_old_check(program, region, s.max_age_hours)));
   if (!s.notify.empty()) {
     const std::string problem = quoted_for_sh(log + "/last_problem.env");
-    out +=
-        job("notify", name + "-notify",
-            after.substr(1) + "\"afternotok:$plan?afternotok:$work?afternotok:$finish\" " + common("notify", "%j"),
-            fmt::format("{}export BLOCKRAND_REGION={} BLOCKRAND_STATE=failed BLOCKRAND_REASON={}\n"
-                        "if [ -r {} ]; then . {}; fi\n{}\n",
-                        enter, region, quoted_for_sh("a job of the night did not end well: see slurm-*.txt in " + log),
-                        problem, problem, s.notify));
+    out += job("notify", name + "-notify",
+               after.substr(1) + "\"afternotok:$plan?afternotok:$work?afternotok:$finish\" " + common("notify", "%j"),
+               fmt::format("{}{}export BLOCKRAND_REGION={} BLOCKRAND_STATE=failed BLOCKRAND_REASON={}\n"
+                           "if [ -r {} ]; then . {}; fi\n{}\n",
+                           enter,
+                           s.notify_given ? std::string()
+                                          : fmt::format("# What ran to its end has told its problem itself.\n"
+                                                        "[ ! {} -nt {}/slurm-night ] || exit 0\n",
+                                                        problem, quoted_for_sh(log)),
+                           region, quoted_for_sh("a job of the night did not end well: see slurm-*.txt in " + log),
+                           problem, problem, s.notify));
   }
   out += "echo \"submitted: plan $plan, work $work, finish $finish\"\n";
   return {{name + ".sh", out}};

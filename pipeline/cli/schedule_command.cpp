@@ -1,8 +1,6 @@
 #include "pipeline/cli/schedule_command.h"
 
 #include <fmt/format.h>
-#include <pwd.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -13,6 +11,7 @@
 #include "pipeline/base/version.h"
 #include "pipeline/cli/configs_folder.h"
 #include "pipeline/cli/exit_codes.h"
+#include "pipeline/cli/region_owner.h"
 #include "pipeline/cli/schedule_files.h"
 #include "pipeline/cli/schedule_quoting.h"
 #include "pipeline/run/region_folder.h"
@@ -40,13 +39,6 @@ void read_time(const std::string& text, Schedule& schedule) {
 }
 
 /// Who owns the region; empty where nobody has a name.
-std::string owner_of(const std::string& folder) {
-  struct stat status {};
-  if (::stat(folder.c_str(), &status) != 0) return "";
-  const passwd* const user = ::getpwuid(status.st_uid);
-  return user ? user->pw_name : "";
-}
-
 bool lies_below_tmp(const std::string& path) {
   std::error_code error;
   const std::string whole = fs::weakly_canonical(path, error).string() + "/";
@@ -95,6 +87,11 @@ Schedule schedule_of(const settings::CommandLine& line, const settings::Settings
   out.needs_network = std::ranges::any_of(data, [](const std::string& path) { return path.starts_with("/vsi"); });
   data.insert(data.end(), {out.region, out.folder, out.program});
   out.below_tmp = std::ranges::any_of(data, lies_below_tmp);
+  const outward::PublishOptions& places = s.publishing;
+  for (const std::string& place :
+       {places.web_root, places.archive.empty() ? "" : fs::path(absolute(places.archive)).parent_path().string()})
+    if (!place.empty()) out.written.push_back(absolute(place));
+  out.needs_network = out.needs_network || !places.command.empty() || !places.postgis.empty();
   out.settings = read_whole(out.region + "/region.toml");
   for (const auto& [what, text] :
        std::initializer_list<std::pair<const char*, const std::string&>>{{"the program's path", out.program},
@@ -149,13 +146,19 @@ int run_schedule(const std::vector<std::string>& arguments) {
     throw base::UsageError(region.path() + " is no region yet. Begin with an extract: blockrand update " +
                            region.path() + " EXTRACT.osm.pbf");
   settings::Settings file;
-  settings::read_config(region.settings(), file, settings::kBuild | settings::kUpdate);
+  settings::read_config(region.settings(), file, settings::kBuild | settings::kUpdate | settings::kPublish);
   const settings::Settings of_file = file;
   line = settings::read_command_line(settings::kSchedule, arguments, std::move(file));
   settings::refuse_unread(line, settings::kSchedule, line.settings.schedule,
                           {{"shards", {"slurm", "kubernetes"}}, {"user", {"systemd"}}, {"image", {"kubernetes"}}});
   const Schedule schedule = schedule_of(line, of_file);
   const std::string& kind = line.settings.schedule;
+  if (line.settings.build.areas == 0 && (kind == "slurm" || (kind == "kubernetes" && schedule.shards > 1)))
+    std::fputs(("blockrand: warning: " + region.path() +
+                " is built as a whole, which is one piece of work: no night can be shared. Write "
+                "areas = 11 below [build] of region.toml first; `region plan` tells how many areas there are\n")
+                   .c_str(),
+               stderr);
   const std::vector<ScheduleFile> files = kind == "systemd" ? systemd_files(schedule)
                                           : kind == "cron"  ? cron_files(schedule)
                                           : kind == "slurm" ? slurm_files(schedule)

@@ -79,11 +79,13 @@ std::string update_service(const Schedule& s, const std::string& unit) {
   out += "Nice=10\nIOWeight=50\nLimitCORE=0\nTasksMax=512\n" + memory_lines(s.memory_limit);
   out += "\n# It reads what it may read, and writes below the region alone.\n";
   out += "ReadWritePaths=" + quoted_for_systemd(s.region) + "\n";
+  for (const std::string& folder : s.written)
+    out += "# [publish] of region.toml writes there.\nReadWritePaths=" + quoted_for_systemd(folder) + "\n";
   out += s.below_tmp ? "# A path of the region lies below /tmp or /var/tmp.\nPrivateTmp=no\n" : "PrivateTmp=yes\n";
   out += kSandbox;
   if (!s.hook.empty() || s.needs_network)
     out +=
-        "# The hook of region.toml, or data that are no files, may want the network.\n"
+        "# The hook or [publish] of region.toml, or data that are no files, may want the network.\n"
         "RestrictAddressFamilies=AF_UNIX AF_INET AF_INET6 AF_NETLINK\n";
   else
     out += "PrivateNetwork=yes\nRestrictAddressFamilies=AF_UNIX\nIPAddressDeny=any\nPrivateUsers=yes\n";

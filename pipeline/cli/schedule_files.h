@@ -20,10 +20,11 @@ struct Schedule {
   std::string user;           ///< systemd: under whom; empty: what systemd takes
   std::string image;          ///< kubernetes: with the program
   std::int64_t shards = 1;
-  std::uint64_t memory_limit = 0;  ///< bytes, of region.toml; 0: none
-  bool needs_network = false;      ///< region.toml names data that are not files
-  bool below_tmp = false;          ///< the region, or something that region.toml names, lies below /tmp or /var/tmp
-  std::string settings;            ///< region.toml itself
+  std::uint64_t memory_limit = 0;    ///< bytes, of region.toml; 0: none
+  bool needs_network = false;        ///< region.toml names data that are not files
+  std::vector<std::string> written;  ///< absolute: folders beside the region that [publish] writes to
+  bool below_tmp = false;            ///< the region, or something that region.toml names, lies below /tmp or /var/tmp
+  std::string settings;              ///< region.toml itself
 };
 
 struct ScheduleFile {

@@ -109,6 +109,25 @@ class Schedules(RegionTest):
                 print(f'systemd-analyze security: {score}')
                 self.assertLess(score, 3, security)
 
+    def test_a_region_as_update_makes_it(self):
+        """region.toml as the program writes it, and one that publishes outward: every kind of schedule is written."""
+        folder = self.path('plain')
+        self.update(folder, SAMPLE)
+        settings = os.path.join(folder, 'region.toml')
+        for kind in ('systemd', 'cron', 'slurm', 'kubernetes'):
+            self.schedule(folder, kind)
+        with open(settings, encoding='utf-8') as f:
+            text = f.read()
+        self.assertIn('[publish]', text)
+        web = self.path('web')
+        with open(settings, 'w', encoding='utf-8') as f:
+            f.write(text.replace('[publish]', f'[publish]\nweb_root = "{web}"', 1))
+        if os.geteuid() == 0:  # what root writes there, the owner cannot remove
+            os.chown(folder, 65534, -1)
+            self.assertIn('chown -R', blockrand('update', folder, '--progress', 'none').err)
+            os.chown(folder, 0, -1)
+        self.assertIn(f'ReadWritePaths={web}', self.schedule(folder, 'systemd').out)
+
     def test_systemd_opens_what_region_toml_needs(self):
         folder = self.region('open', '[build]\nmemory_limit = 1000000000\n[region]\nhook = "curl example.org"\n')
         text = self.schedule(folder, 'systemd').out
@@ -199,6 +218,9 @@ class Schedules(RegionTest):
                     'case "$*" in *--array*) export SLURM_ARRAY_TASK_ID=2;; esac\n'
                     'case "$*" in *notify*) ;; *) sh "$LOG.job" ;; esac 1>&2\necho "$(wc -l < "$LOG");cluster"\n')
         os.chmod(os.path.join(tools, 'sbatch'), 0o755)
+        with open(os.path.join(tools, 'squeue'), 'w', encoding='utf-8') as f:
+            f.write('#!/bin/sh\n')
+        os.chmod(os.path.join(tools, 'squeue'), 0o755)
         program = self.fake_program(self.path('fake ' + self.ODD), log)
         script = call([program[0], 'schedule', folder, '--print', 'slurm', '--shards', '4', '--max-age', '30', '--notify', 'echo $BLOCKRAND_REASON'])
         self.assertEqual(script.code, 0, script)
