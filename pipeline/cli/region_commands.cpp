@@ -370,10 +370,17 @@ std::string plan_report(const run::RegionShards& plan, const std::string& region
   return out;
 }
 
+/// Where a plan that had nothing to build leaves word for `work` and `finish` of the same night.
+std::string nothing_mark(const run::RegionFolder& region) { return region.path() + "/log/nothing_to_build"; }
+
 int plan(settings::Settings& s, run::UpdateOptions& options, base::Progress& progress) {
   make_region(options, s);
+  const run::RegionFolder region(options.folder);
+  std::error_code error;
+  std::filesystem::remove(nothing_mark(region), error);
   const run::UpdateSummary summary = run::plan_region(options, s.shards, progress);
   progress.end();
+  if (summary.state == run::UpdateState::unchanged) run::write_whole(nothing_mark(region), "\n");
   const int code = ended(options, summary, s, progress);
   if (summary.state == run::UpdateState::shared && !s.quiet && s.log_format != base::LogFormat::json)
     std::fputs(plan_report(run::RegionShards::read(run::RegionFolder(options.folder)), options.folder).c_str(), stdout);
@@ -384,19 +391,15 @@ std::string told_as_json(const nlohmann::ordered_json& j) {
   return j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-/// Whether a region has no plan: the night had nothing to build, or is finished. Said, and no error.
-bool has_no_plan(const settings::Settings& s) {
+/// Whether the last plan of a region had nothing to build. Said, and no error.
+bool has_nothing_to_do(const settings::Settings& s) {
   const run::RegionFolder region(s.region);
-  if (!region.exists() || run::plan_status(region)) return false;
+  std::error_code error;
+  if (!std::filesystem::exists(nothing_mark(region), error) || run::plan_status(region)) return false;
   if (s.log_format == base::LogFormat::json)
     std::fputs(told_as_json({{"state", "nothing"}}).c_str(), stdout);
   else if (!s.quiet)
-    std::fputs(
-        fmt::format(
-            "nothing to do: {} has no plan. Either nothing was to be built when one was asked for, or it is finished\n",
-            s.region)
-            .c_str(),
-        stdout);
+    std::fputs(fmt::format("nothing to do: the last plan of {} had nothing to build\n", s.region).c_str(), stdout);
   return true;
 }
 
@@ -456,7 +459,8 @@ int run_region(const std::vector<std::string>& arguments) {
   if (s.region_work == "plan") return plan(s, options, progress);
   if (s.region_work == "work" && s.shard.empty())
     throw base::UsageError("region work needs --shard I/N: one of those that the plan has");
-  if (has_no_plan(s)) return kSuccess;
+  if (s.region_work == "work") run::parse_shard(s.shard);
+  if (has_nothing_to_do(s)) return kSuccess;
   if (s.region_work == "work") return work(s, options, progress);
   const run::UpdateSummary summary = run::finish_region(options, progress);
   progress.end();

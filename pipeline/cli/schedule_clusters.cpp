@@ -109,18 +109,18 @@ Container update_container(const Schedule& s, const std::string& place) {
 }
 
 std::string plan_script(const Schedule& s, const std::string& place) {
-  return fmt::format(R"(set -eu
+  return fmt::format(R"SH(set -eu
 night={0}/log/nights/$JOB_NAME
 mkdir -p "$night"
 # The first pod plans the night, the others wait for it.
 if [ "$JOB_COMPLETION_INDEX" = 0 ] && [ ! -e "$night/planned" ]; then
-  # A plan that is left is that of a night that ended in the middle: no other job is at work (concurrencyPolicy).
-  [ ! -e {0}/plan ] || blockrand region drop {0} --break-lock
-  blockrand region plan {0} --shards {1}
+  # A plan older than a job may take is that of a night that ended in the middle. Locks of pods that are gone are no obstacle.
+  [ -z "$(find {0}/plan/plan.json -mmin +1385 2>/dev/null)" ] || blockrand region drop {0} --break-lock
+  blockrand region plan {0} --shards {1} --break-lock
   touch "$night/planned"
 fi
 until [ -e "$night/planned" ]; do sleep 5; done
-)",
+)SH",
                      place, s.shards);
 }
 
@@ -130,7 +130,7 @@ night={0}/log/nights/$JOB_NAME
 blockrand region work {0} --shard "$((JOB_COMPLETION_INDEX + 1))/{1}"
 touch "$night/worked-$JOB_COMPLETION_INDEX"
 [ "$(find "$night" -name 'worked-*' | wc -l)" -eq {1} ] || exit 0
-#Who is the first to see that all is done finishes the night; after a failure the same one again.
+# Who is the first to see that all is done finishes the night; after a failure the same one again.
 ln -s "$JOB_COMPLETION_INDEX" "$night/finished_by" 2>/dev/null || true
 [ "$(readlink "$night/finished_by")" = "$JOB_COMPLETION_INDEX" ] || exit 0
 blockrand region finish {0}
@@ -222,12 +222,15 @@ std::vector<ScheduleFile> slurm_files(const Schedule& s) {
       "of a "
       "job are\n# those of the partition, unless SBATCH_… in the environment or options beside --job-name say others.\n"
       "set -eu\nmkdir -p {4}\nfind {4} -name 'slurm-*.txt' -mtime +30 -delete\n"
-      "if [ -n \"$(squeue --noheader --name={5}-plan,{5}-work,{5}-finish)\" ]; then\n"
+      "jobs=$(squeue --noheader --me --name={5}-plan,{5}-work,{5}-finish)\n"
+      "if [ -n \"$jobs\" ]; then\n"
       "  echo 'the night before is still at work: nothing is submitted' >&2\n  exit 1\nfi\ntouch {4}/slurm-night\n\n",
       s.name, s.shards, s.minute, s.hour, quoted_for_sh(log), quoted_for_sh(name));
   out += job("plan", name + "-plan", "--requeue " + common("plan", "%j"),
              fmt::format("{0}# A plan that is left is that of a night of which a job was lost.\n"
-                         "[ ! -e {2}/plan ] || {1} region drop {2}\nexec {1} region plan {2} --shards {3}\n",
+                         "# Locks of hosts that are gone are no obstacle: no other job of it is at work.\n"
+                         "[ ! -e {2}/plan/plan.json ] || {1} region drop {2} --break-lock\nexec {1} region plan {2} "
+                         "--shards {3} --break-lock\n",
                          enter, program, region, s.shards));
   out += job(
       "work", name + "-work",
@@ -241,14 +244,15 @@ std::vector<ScheduleFile> slurm_files(const Schedule& s) {
     out += job("notify", name + "-notify",
                after.substr(1) + "\"afternotok:$plan?afternotok:$work?afternotok:$finish\" " + common("notify", "%j"),
                fmt::format("{}{}export BLOCKRAND_REGION={} BLOCKRAND_STATE=failed BLOCKRAND_REASON={}\n"
-                           "if [ -r {} ]; then . {}; fi\n{}\n",
+                           "{}{}\n",
                            enter,
                            s.notify_given ? std::string()
                                           : fmt::format("# What ran to its end has told its problem itself.\n"
                                                         "[ ! {} -nt {}/slurm-night ] || exit 0\n",
                                                         problem, quoted_for_sh(log)),
                            region, quoted_for_sh("a job of the night did not end well: see slurm-*.txt in " + log),
-                           problem, problem, s.notify));
+                           s.notify_given ? fmt::format("if [ -r {0} ]; then . {0}; fi\n", problem) : std::string(),
+                           s.notify));
   }
   out += "echo \"submitted: plan $plan, work $work, finish $finish\"\n";
   return {{name + ".sh", out}};

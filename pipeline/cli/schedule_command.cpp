@@ -38,7 +38,6 @@ void read_time(const std::string& text, Schedule& schedule) {
     throw base::UsageError("--at " + text + " is no time of day. Write for example --at 02:30.");
 }
 
-/// Who owns the region; empty where nobody has a name.
 bool lies_below_tmp(const std::string& path) {
   std::error_code error;
   const std::string whole = fs::weakly_canonical(path, error).string() + "/";
@@ -86,11 +85,13 @@ Schedule schedule_of(const settings::CommandLine& line, const settings::Settings
   std::vector<std::string> data = data_of(s);
   out.needs_network = std::ranges::any_of(data, [](const std::string& path) { return path.starts_with("/vsi"); });
   data.insert(data.end(), {out.region, out.folder, out.program});
-  out.below_tmp = std::ranges::any_of(data, lies_below_tmp);
   const outward::PublishOptions& places = s.publishing;
   for (const std::string& place :
        {places.web_root, places.archive.empty() ? "" : fs::path(absolute(places.archive)).parent_path().string()})
     if (!place.empty()) out.written.push_back(absolute(place));
+  data.insert(data.end(), out.written.begin(), out.written.end());
+  out.below_tmp = std::ranges::any_of(data, lies_below_tmp);
+  for (const std::string& place : out.written) check_text("a folder of [publish]", place);
   out.needs_network = out.needs_network || !places.command.empty() || !places.postgis.empty();
   out.settings = read_whole(out.region + "/region.toml");
   for (const auto& [what, text] :
@@ -153,6 +154,12 @@ int run_schedule(const std::vector<std::string>& arguments) {
                           {{"shards", {"slurm", "kubernetes"}}, {"user", {"systemd"}}, {"image", {"kubernetes"}}});
   const Schedule schedule = schedule_of(line, of_file);
   const std::string& kind = line.settings.schedule;
+  for (const std::string& place : schedule.written)
+    if (kind == "systemd" && !fs::is_directory(place, error))
+      throw base::UsageError(place +
+                             ", where [publish] of region.toml writes, is not there: the service could not begin. Make "
+                             "the folder first, so that " +
+                             schedule.user + " may write there.");
   if (line.settings.build.areas == 0 && (kind == "slurm" || (kind == "kubernetes" && schedule.shards > 1)))
     std::fputs(("blockrand: warning: " + region.path() +
                 " is built as a whole, which is one piece of work: no night can be shared. Write "

@@ -13,6 +13,15 @@ namespace {
 using geometry::PlanBox;
 using model::TileId;
 
+/// Kinds of features that nothing around houses is made of (surroundings::kind_of).
+constexpr std::uint32_t kNotAround = [] {
+  using enum model::FeatureKind;
+  std::uint32_t bits = 0;
+  for (const model::FeatureKind kind : {entrance, address, shop, roof_line, roof_apex, place, boundary})
+    bits |= static_cast<std::uint32_t>(kind);
+  return bits;
+}();
+
 AreaChanges look_into_all(std::string why) { return {{}, {}, {}, {}, std::move(why)}; }
 
 double size(const PlanBox& box) {
@@ -77,7 +86,7 @@ AreaChanges concerned_tiles(const TileChoice& area, const AreaReach& reaches,
     const bool look_only = change.look_only && !(rules.asks_look && change.kinds != 0);
     // These are heard of from farther away than reaches say (SurroundingsFinder::reach).
     if (surroundings && change.coast) return look_into_all("the coast, " + change.id.text());
-    if (surroundings &&
+    if (surroundings && (change.kinds & ~kNotAround) != 0 &&
         std::max(change.box[2] - change.box[0], change.box[3] - change.box[1]) > importers::osm::kWholeSpan)
       return look_into_all(change.id.text() + " spans much of it");
     constexpr double kBent = 1;  // m: sides of the box of an object in the projection

@@ -131,7 +131,7 @@ ClaimFinder::ClaimFinder(const SurroundingInputs& inputs) : in_(inputs) {
     const std::optional<SurroundingKind> kind = kind_of(feature, tag, in_.catalogue);
     if (!kind) continue;
     Thing thing{f, *kind, hidden_state(feature, tag)};
-    if (*kind == SurroundingKind::road || *kind == SurroundingKind::bridge)
+    if (*kind == SurroundingKind::road || *kind == SurroundingKind::bridge || *kind == SurroundingKind::tunnel)
       thing.keeps_left = keeps_left(e, feature, tag, in_.catalogue);
     PlanBox box, degrees;
     for (const model::MappedRing& ring : e.rings_of(feature.rings))
@@ -224,7 +224,7 @@ bool ClaimFinder::claims_ground(const Thing& thing) const {
   const model::Feature& feature = in_.extract.features[thing.feature];
   const TagOf tag = tags_of(thing.feature);
   if (feature.area) return thing.kind != bridge && in_.catalogue.ground_of(tag) != nullptr;
-  if (thing.kind == road) return street_profile(tag, true, in_.catalogue).has_value();
+  if (thing.kind == road) return street_profile(tag, true, in_.catalogue, false).has_value();
   if (thing.kind == railway) return is_track(tag(osm_key::kRailway));
   return thing.kind == water && (usual_width(tag(osm_key::kWaterway)) > 0 || is_coast(tag));
 }
@@ -307,10 +307,12 @@ void ClaimFinder::add_street_piece(const Thing& thing, const TagOf& tag, const s
     if (known == reaches.end()) known = reaches.insert(known, {&strip, 0, 0, false});
     known->left = std::max(known->left, -strip.left), known->right = std::max(known->right, strip.right);
   }
-  // Pavements reach to the houses: strips of land between them would be less than a step wide. Whatever is mapped there is stronger.
+  // Pavements reach up to kForecourt farther where nothing is mapped: mostly to a house, with a strip of land before it otherwise. A width
+  // that is told of a footway holds.
+  const bool told = profile->carriageway_left == profile->carriageway_right && !tag(osm_key::kWidth).empty();
   std::vector<Reach> claims = reaches;
   for (Reach forecourt : reaches) {
-    if (forecourt.strip->ground != GroundClass::pavement) continue;
+    if (told || forecourt.strip->ground != GroundClass::pavement) continue;
     if (forecourt.left > 0) forecourt.left += kForecourt;
     if (forecourt.right > 0) forecourt.right += kForecourt;
     forecourt.beyond = true;

@@ -66,7 +66,7 @@ std::vector<model::SurroundingBody> portal_bodies(const BodySite& site, const Th
   if (track) {
     if (!is_track(tag(osm_key::kRailway))) return {};
   } else {
-    const std::optional<StreetProfile> profile = street_profile(tag, false, site.in.catalogue);
+    const std::optional<StreetProfile> profile = street_profile(tag, false, site.in.catalogue, thing.keeps_left);
     if (thing.kind != SurroundingKind::tunnel || !profile || profile->strips.empty()) return {};
     left = profile->strips.front().left - kClear, right = profile->strips.back().right + kClear;
     const bool vehicles = std::ranges::any_of(

@@ -233,7 +233,7 @@ class Stairs {
 
 std::optional<model::SurroundingBody> stair_bodies(const BodySite& site, const Thing& thing) {
   const TagOf tag = site.claims.tags_of(thing.feature);
-  const std::optional<StreetProfile> profile = street_profile(tag, true, site.in.catalogue);
+  const std::optional<StreetProfile> profile = street_profile(tag, true, site.in.catalogue, false);
   if (tag(osm_key::kHighway) != "steps" || !profile || profile->strips.empty()) return std::nullopt;
   std::vector<FlatPolygon> faces;
   for (const std::vector<Point2>& line : site.claims.lines_of(thing)) {

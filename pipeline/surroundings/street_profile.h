@@ -37,7 +37,7 @@ struct StreetProfile {
 /// \param keeps_left  vehicles keep to the left: tells where what has no side lies in a street of one direction
 /// \return nothing for what is no ground: highway=construction, proposed, corridor, elevator, bus_stop …
 std::optional<StreetProfile> street_profile(const TagOf& tag, bool built_up, const Catalogue& catalogue,
-                                            bool keeps_left = false);
+                                            bool keeps_left);
 
 /// A length as tags have it ("3.5", "3,5 m", "350 cm", "12 ft", "7'6\""), m; nothing where it cannot be read, as ranges and
 /// negative ones.

@@ -23,6 +23,9 @@ using geometry::PlanBox;
 using model::Point2;
 using model::SurroundingState;
 
+/// m: how far from a tile's squares places lie at most whose ground is asked for: below bridges that come there (kLookedThrough), and the
+/// middles of their squares.
+constexpr double kBesideSquares = 450;
 /// m. A longer straight line is no thing of a town.
 constexpr double kMostLooked = 100000;
 
@@ -80,9 +83,12 @@ bool found_at(Point2 p, const geometry::AreaClaim& claim, const GroundLabel& lab
 Point2 beside_traffic(Point2 place, std::string_view kind, bool on_street, const GroundAtPlace& ground) {
   using enum model::GroundClass;
   const auto is_traffic = [](const GroundAt& at) {
-    return !at.building && (at.ground == carriageway || at.ground == parking_lane || at.ground == cycle_way);
+    return !at.building &&
+           (at.ground == carriageway || at.ground == parking_lane || at.ground == cycle_way || at.ground == rail_bed);
   };
-  if (kind == "bollard" || kind == "gate" || kind == "lift_gate" || kind == "block" || kind == "planter") return place;
+  constexpr std::string_view kInTheWay[] = {"bollard",    "gate",      "lift_gate",     "block",       "planter",
+                                            "toll_booth", "turnstile", "cycle_barrier", "kissing_gate"};
+  if (std::ranges::find(kInTheWay, kind) != std::end(kInTheWay)) return place;
   if (!is_traffic(ground(place))) return place;
   constexpr double kHalf = 0.5, kDiagonal = 0.70710678118654752, kCosine = 0.86602540378443865;
   constexpr double kDirections[16][2] = {{1, 0},  {kCosine, kHalf},   {kDiagonal, kDiagonal},   {kHalf, kCosine},
@@ -394,12 +400,13 @@ SurroundingsReach SurroundingsFinder::reach(model::TileId tile) const {
     if (feature.area || thing.hidden || feature.rings.count != 1) continue;
     if (has_wires(in_, thing)) add_lines(thing, kMostSpan);
     if (thing.kind == SurroundingKind::bridge) add(geometry::box_of(claims_.bridge_run(thing).line));
+    // Gates at the ends of its segments say how long its pieces are.
+    if (thing.kind == SurroundingKind::barrier) add_lines(thing, kSurroundingsReach);
   }
-  for (const std::uint32_t t : claims_.coasts()) add_lines(claims_.things()[t], geometry::kCoastReach);
+  for (const std::uint32_t t : claims_.coasts()) add_lines(claims_.things()[t], geometry::kCoastReach + kBesideSquares);
   for (const Thing& thing : claims_.things())
-    if (thing.wide) add_lines(thing, kWideReach);
-  for (const PlanBox& place : std::vector<PlanBox>(out.things))
-    for (const PlanBox& block : claims_.blocks_near(place)) out.blocks.push_back(block);
+    if (thing.wide) add_lines(thing, kWideReach + kBesideSquares);
+  out.blocks = claims_.blocks_near(grown(box, kTownStreetReach));
   return out;
 }
 
@@ -417,6 +424,10 @@ void SurroundingsFinder::pack_thing(const Thing& thing, const PlanBox& around, b
     for (std::size_t i = 0; i < nodes.size() && i < vertices.size(); ++i) {
       PlanBox at;
       at.include(in_.projection.forward(vertices[i]));
+      // A barrier's pieces are as long as its segment has room for, from end to end.
+      if (thing.kind == SurroundingKind::barrier)
+        for (const std::size_t k : {i > 0 ? i - 1 : i, i + 1 < vertices.size() ? i + 1 : i})
+          at.include(in_.projection.forward(vertices[k]));
       if (!at.near(around, kNodeReach)) continue;
       const StreetControl control = claims_.control_at(nodes[i]);
       constexpr double kStreet = 2, kGate = 1;  // any two lengths

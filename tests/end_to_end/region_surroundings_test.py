@@ -133,6 +133,10 @@ class Nights(RegionTest):
                     with open(os.path.join(folder, 'log', 'runs.jsonl'), encoding='utf-8') as f:
                         tiles = json.loads(f.readlines()[-1])['tiles']
                     self.assertTrue(1 <= tiles['built'] <= 4, tiles)
+                    if more:  # areas are looked into in part, none as a whole
+                        runs = [read_json(self.current(folder), 'areas', a, 'run.json') for a in areas(self.current(folder))]
+                        self.assertEqual([why for r in runs if (why := r.get('looked_into_all_because'))], [])
+                        self.assertTrue(any('looked_into' in r for r in runs))
                     self.assertGreater(tiles['kept'], tiles['built'])
                     clean = self.clean(map_, folder, *options(1, *of_clean))
                     first, second = (without_runs(hashes(f)) for f in (self.current(folder), clean))

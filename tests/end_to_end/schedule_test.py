@@ -122,6 +122,10 @@ class Schedules(RegionTest):
         web = self.path('web')
         with open(settings, 'w', encoding='utf-8') as f:
             f.write(text.replace('[publish]', f'[publish]\nweb_root = "{web}"', 1))
+        self.assertIn('Make the folder first', self.schedule(folder, 'systemd', code=1).err)  # a unit cannot open what is not there
+        os.makedirs(web)
+        with open(settings, 'w', encoding='utf-8') as f:
+            f.write(text.replace('[publish]', f'[publish]\nweb_root = "{web}"', 1))
         if os.geteuid() == 0:  # what root writes there, the owner cannot remove
             os.chown(folder, 65534, -1)
             self.assertIn('chown -R', blockrand('update', folder, '--progress', 'none').err)
@@ -203,7 +207,7 @@ class Schedules(RegionTest):
         self.assertEqual(pod(1).wait(60), 0, 'Kubernetes begins the pod again')
         with open(log, encoding='utf-8') as f:
             calls = [line.strip().replace(place, 'R') for line in f]
-        self.assertEqual(calls.count(f'region plan R --shards {shards}'), 1)
+        self.assertEqual(calls.count(f'region plan R --shards {shards} --break-lock'), 1)
         self.assertEqual({c for c in calls if ' work ' in c}, {f'region work R --shard {i}/{shards}' for i in range(1, shards + 1)})
         self.assertEqual(calls.count('region finish R'), 1)
         self.assertEqual(calls[-1], 'region finish R', 'it comes when all have worked')
@@ -219,7 +223,7 @@ class Schedules(RegionTest):
                     'case "$*" in *notify*) ;; *) sh "$LOG.job" ;; esac 1>&2\necho "$(wc -l < "$LOG");cluster"\n')
         os.chmod(os.path.join(tools, 'sbatch'), 0o755)
         with open(os.path.join(tools, 'squeue'), 'w', encoding='utf-8') as f:
-            f.write('#!/bin/sh\n')
+            f.write('#!/bin/sh\necho "$JOBS"\n')
         os.chmod(os.path.join(tools, 'squeue'), 0o755)
         program = self.fake_program(self.path('fake ' + self.ODD), log)
         script = call([program[0], 'schedule', folder, '--print', 'slurm', '--shards', '4', '--max-age', '30', '--notify', 'echo $BLOCKRAND_REASON'])
@@ -230,8 +234,20 @@ class Schedules(RegionTest):
         with open(log, encoding='utf-8') as f:
             lines = [line.strip() for line in f]
         calls = [line for line in lines if not line.startswith('sbatch')]
-        self.assertEqual(calls, [f'region plan {folder} --shards 4', f'region work {folder} --shard 2/4', f'region finish {folder}',
+        self.assertEqual(calls, [f'region plan {folder} --shards 4 --break-lock', f'region work {folder} --shard 2/4', f'region finish {folder}',
                                  f'status {folder} --max-age 30'])
+        # A plan that a broken night left is given up; while jobs are at work nothing is submitted.
+        os.makedirs(os.path.join(folder, 'plan'))
+        with open(os.path.join(folder, 'plan', 'plan.json'), 'w', encoding='utf-8') as f:
+            f.write('{}')
+        env = {'LOG': log, 'PATH': tools + ':' + os.environ['PATH']}
+        self.assertEqual(call(['/bin/sh', self.place('night.sh', script.out)], env=env).code, 0)
+        with open(log, encoding='utf-8') as f:
+            self.assertIn(f'region drop {folder} --break-lock\n', f.read())
+        busy = call(['/bin/sh', self.place('night.sh', script.out)], env={**env, 'JOBS': '7 night'})
+        self.assertEqual(busy.code, 1, busy)
+        self.assertIn('still at work', busy.err)
+        shutil.rmtree(os.path.join(folder, 'plan'))
         jobs = [line for line in lines if line.startswith('sbatch')]
         self.assertIn('--array=1-4', jobs[1])
         self.assertIn('--dependency=afterok:2 ', jobs[1])

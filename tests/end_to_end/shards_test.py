@@ -120,11 +120,8 @@ class Shards(ShardTest):
         self.region_command('drop', folder)
         self.assertEqual(os.listdir(os.path.join(folder, 'store')), [])
         self.refused(blockrand('region', 'drop', folder), 1, 'no plan')
-        # A night without anything to build has no plan: its other jobs have nothing to do, and that is no failure.
-        for nothing in (('finish', folder), ('work', folder, '--shard', '1/2')):
-            run = blockrand('region', *nothing)
-            self.assertEqual(run.code, 0, run)
-            self.assertIn('has no plan', run.out)
+        for lost in (('finish', folder), ('work', folder, '--shard', '1/2')):
+            self.refused(blockrand('region', *lost), 1, 'no plan')
         self.plan(folder, extract, shards=2)
         for shard in ('1/2', '2/2'):
             self.region_command('work', folder, '--shard', shard)
@@ -136,6 +133,13 @@ class Shards(ShardTest):
             self.region_command('work', folder, '--shard', shard)
         self.region_command('finish', folder)
         self.published(folder, '000001')
+        # A plan that finds nothing to build: the other jobs of that night have nothing to do, and that is no failure.
+        self.assertIn('nothing to build', blockrand('region', 'plan', folder, '--shards', '2').out)
+        for nothing in (('work', folder, '--shard', '1/2'), ('finish', folder)):
+            run = blockrand('region', *nothing)
+            self.assertEqual(run.code, 0, run)
+            self.assertIn('nothing to do', run.out)
+        self.refused(blockrand('region', 'work', folder, '--shard', 'rubbish'), 1, 'rubbish')
         whole = self.region('whole', LIMITS_OFF)
         self.refused(blockrand('region', 'plan', whole, extract), 1, 'areas = ')
         self.assertFalse(os.path.exists(os.path.join(whole, 'plan')))

@@ -364,8 +364,9 @@ class ShapeWriter {
         const Point3 n = normal_of(a, b, c);
         if (!(length_of(n) > 0) || known.size() + 3 > MeshPrimitive::kMostVertices) continue;
         for (const Point3* p : {&a, &b, &c}) {
-          const Point3 own = part.round ? round.at({p->x, p->y, p->z}) : n;
-          const double length = length_of(own) > 0 ? length_of(own) : 1;
+          const Point3 sum = part.round ? round.at({p->x, p->y, p->z}) : n;
+          const Point3& own = length_of(sum) > 0 ? sum : n;
+          const double length = length_of(own);
           const auto byte = [&](double value) { return static_cast<std::int8_t>(std::lround(value / length * 127)); };
           const std::array<std::int8_t, 3> normal = y_up(byte(own.x), byte(own.y), byte(own.z));
           std::array<float, 3> at{};
@@ -456,12 +457,15 @@ class CourseFinder {
         if (!(length > 0) || dx == 0 || dy == 0 || std::fabs(dx) == std::fabs(dy)) continue;
         const double c = dx / length, s = dy / length, c2 = c * c - s * s, s2 = 2 * c * s;
         sums_[row][0] += length * (c2 * c2 - s2 * s2), sums_[row][1] += length * (2 * c2 * s2);
+        sums_[row][2] += length;
       }
   }
   std::vector<std::array<double, 2>> take() const {
     std::vector<std::array<double, 2>> out;
-    for (const auto& [x, y] : sums_) {
-      const double angle = x == 0 && y == 0 ? 0 : base::atan2(y, x) / 4;
+    // Of sides that lead everywhere, as round ends do, nothing is left but noise.
+    constexpr double kAgreed = 0.1;
+    for (const auto& [x, y, length] : sums_) {
+      const double angle = x * x + y * y > kAgreed * kAgreed * length * length ? base::atan2(y, x) / 4 : 0;
       const base::SinCos turn = base::sin_cos(std::nearbyint(angle / kStep) * kStep);
       out.push_back({turn.cos, turn.sin});
     }
@@ -470,7 +474,7 @@ class CourseFinder {
 
  private:
   static constexpr double kStep = 2 * base::kRadiansPerDegree;
-  std::vector<std::array<double, 2>> sums_;  ///< by row: lengths of sides at four times their angles
+  std::vector<std::array<double, 3>> sums_;  ///< by row: lengths of sides at four times their angles, and along
 };
 
 /// Whether the edges of a ground are stones; where land lies higher than a road there are none.

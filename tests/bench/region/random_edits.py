@@ -63,7 +63,7 @@ def main():
     sums = [0.0, 0.0]
     for night in range(1, options.nights + 1):
         count = rng.choice([int(n) for n in options.edits.split(',')])
-        around = sum(rng.random() < options.around for _ in range(count))
+        around = sum(rng.random() < options.around for _ in range(count)) if options.around else 0
         map_.random_edits(rng, around)
         Map.random_edits(map_, rng, count - around)
         changes = map_.write_changes(os.path.join(options.work, 'night.osc'))

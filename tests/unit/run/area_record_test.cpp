@@ -243,6 +243,9 @@ TEST(AreaChanges, WhatStandsAroundHousesIsHeardOfNearBy) {
   EXPECT_EQ(concerned_tiles(area, reaches, changes, {}, false, projection).why_whole, "");
   changes[0].coast = false;
   changes[0].box[2] = changes[0].box[0] + 1.5;
+  changes[0].is_surrounding = false, changes[0].kinds = static_cast<std::uint32_t>(model::FeatureKind::boundary);
+  EXPECT_EQ(concerned_tiles(area, reaches, changes, {}, true, projection).why_whole.find("spans"), std::string::npos);
+  changes[0].kinds = static_cast<std::uint32_t>(model::FeatureKind::land_use);
   EXPECT_NE(concerned_tiles(area, reaches, changes, {}, true, projection).why_whole, "");
 }
 

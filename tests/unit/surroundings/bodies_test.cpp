@@ -149,6 +149,68 @@ TEST(Streets, PavementsReachToHousesThatStandALittleFartherAway) {
   }
 }
 
+// ---- what a night looks at
+
+/// A town with a long fence, wires and a bridge; `edit` changes something of it.
+Town long_lines(const std::string& edit = {}) {
+  Town town = town_with_a_house();
+  const auto tags = [&](const char* name, Town::Tags there) { return edit == name ? there : Town::Tags{}; };
+  town.point({400, 30}, tags("gate", {{"barrier", "gate"}}));
+  town.way(2, {{0, 30}, {400, 30}}, {{"barrier", "fence"}});
+  const double far = edit == "tower" ? 1210 : 1200;
+  for (const double x : {0.0, far}) town.point({x, -60}, {{"power", "tower"}});
+  town.way(3, {{0, -60}, {far, -60}}, {{"power", "line"}});
+  town.way(4, {{-300, -200}, {0, -200}}, {{"highway", "primary"}, {"bridge", "yes"}, {"layer", "1"}});
+  town.way(5, {{0, -200}, {900, -200}, {1000, edit == "bridge" ? -190.0 : -200.0}},
+           {{"highway", "primary"}, {"bridge", "yes"}, {"layer", "1"}});
+  town.way(6, {{-60, 60}, {60, 60}}, {{"highway", "residential"}});
+  if (edit == "lamp") town.point({20, 100}, {{"highway", "street_lamp"}});
+  if (edit == "house") town.box(7, 20, 75, 40, 90, kHouse);
+  return town;
+}
+
+TEST(SurroundingsReach, HoldsWhateverMakesATileAnotherOne) {
+  const BuiltTown before(long_lines());
+  constexpr double kUnits = 1e7;
+  const model::TileId middle = georef::tile_of(
+      {static_cast<std::int32_t>(13.4 * kUnits), static_cast<std::int32_t>(52.5 * kUnits)}, footprints::kTileLevel);
+  const auto key = [](const BuiltTown& town, const model::TileId& tile) {
+    base::Packer out;
+    town.finder().pack(tile, out);
+    return out.bytes;
+  };
+  const auto made = [](const BuiltTown& town, const model::TileId& tile) {
+    base::Packer out;
+    const model::Surroundings around = town.finder().around(tile);
+    out << around.surfaces << around.bodies << around.objects;
+    return out.bytes;
+  };
+  const std::pair<const char*, Point2> edits[] = {
+      {"gate", {400, 30}}, {"tower", {1200, -60}}, {"bridge", {1000, -200}}, {"lamp", {20, 100}}, {"house", {30, 82}}};
+  for (const auto& [edit, place] : edits) {
+    const BuiltTown after(long_lines(edit));
+    const Point2 p = before.from_town(place);
+    geometry::PlanBox changed;
+    changed.include(Point2{p.x - 15, p.y - 15}), changed.include(Point2{p.x + 15, p.y + 15});
+    int others = 0;
+    for (int x = -4; x <= 4; ++x)
+      for (int y = -1; y <= 1; ++y) {
+        model::TileId tile = middle;
+        tile.x += static_cast<decltype(tile.x)>(x), tile.y += static_cast<decltype(tile.y)>(y);
+        const bool another = made(before, tile) != made(after, tile);
+        if (key(before, tile) == key(after, tile)) {
+          EXPECT_FALSE(another) << "a tile that would be taken for the same: " << edit << ' ' << x << ' ' << y;
+          continue;
+        }
+        ++others;
+        const SurroundingsReach reach = before.finder().reach(tile);
+        EXPECT_TRUE(std::ranges::any_of(reach.things, [&](const auto& box) { return box.near(changed, 0); }))
+            << edit << ' ' << x << ' ' << y;
+      }
+    EXPECT_GT(others, 0) << edit;
+  }
+}
+
 // ---- stop lines
 
 /// A street from west to east that ends at one from south to north.

@@ -166,6 +166,10 @@ class BuiltTown {
       }
     return sum;
   }
+  /// A place in metres from the town's origin in the build CRS.
+  model::Point2 from_town(model::Point2 p) const {
+    return {origin_.x + p.x * east_.x - p.y * east_.y, origin_.y + p.x * east_.y + p.y * east_.x};
+  }
   /// A place of the build CRS in metres from the town's origin.
   model::Point2 in_town(model::Point2 p) const {
     const double x = p.x - origin_.x, y = p.y - origin_.y;
