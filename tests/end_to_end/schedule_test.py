@@ -289,11 +289,11 @@ class Schedules(RegionTest):
                     calls = f.read().replace(folder, 'R').splitlines()
                 os.remove(log)
                 if fails:
-                    self.assertEqual(calls[0], 'region plan R --shards 3')
+                    self.assertEqual(calls[0], 'region plan R --shards 3 --break-lock')
                     self.assertEqual(len(calls), 2, calls)
                     self.assertIn('did not end well', calls[1])
                 else:
-                    self.assertEqual((calls[0], calls[-1]), ('region plan R --shards 3', 'region finish R'))
+                    self.assertEqual((calls[0], calls[-1]), ('region plan R --shards 3 --break-lock', 'region finish R'))
                     self.assertEqual(sorted(calls[1:-1]), [f'region work R --shard {i}/3' for i in (1, 2, 3)])
             print('Slurm', call(['sinfo', '--version']).out.strip() + ': a night, and one whose plan fails')
 
