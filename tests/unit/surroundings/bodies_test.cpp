@@ -155,11 +155,11 @@ TEST(Streets, PavementsReachToHousesThatStandALittleFartherAway) {
 Town long_lines(const std::string& edit = {}) {
   Town town = town_with_a_house();
   const auto tags = [&](const char* name, Town::Tags there) { return edit == name ? there : Town::Tags{}; };
-  town.point({400, 30}, tags("gate", {{"barrier", "gate"}}));
-  town.way(2, {{0, 30}, {400, 30}}, {{"barrier", "fence"}});
+  town.point({900, 400}, tags("gate", {{"barrier", "gate"}}));
+  town.way(2, {{0, 400}, {900, 400}}, {{"barrier", "fence"}});
   const double far = edit == "tower" ? 1210 : 1200;
-  for (const double x : {0.0, far}) town.point({x, -60}, {{"power", "tower"}});
-  town.way(3, {{0, -60}, {far, -60}}, {{"power", "line"}});
+  for (const double x : {0.0, far}) town.point({x, 640}, {{"power", "tower"}});
+  town.way(3, {{0, 640}, {far, 640}}, {{"power", "line"}});
   town.way(4, {{-300, -200}, {0, -200}}, {{"highway", "primary"}, {"bridge", "yes"}, {"layer", "1"}});
   town.way(5, {{0, -200}, {900, -200}, {1000, edit == "bridge" ? -190.0 : -200.0}},
            {{"highway", "primary"}, {"bridge", "yes"}, {"layer", "1"}});
@@ -186,7 +186,7 @@ TEST(SurroundingsReach, HoldsWhateverMakesATileAnotherOne) {
     return out.bytes;
   };
   const std::pair<const char*, Point2> edits[] = {
-      {"gate", {400, 30}}, {"tower", {1200, -60}}, {"bridge", {1000, -200}}, {"lamp", {20, 100}}, {"house", {30, 82}}};
+      {"gate", {900, 400}}, {"tower", {1200, 640}}, {"bridge", {1000, -200}}, {"lamp", {20, 100}}, {"house", {30, 82}}};
   for (const auto& [edit, place] : edits) {
     const BuiltTown after(long_lines(edit));
     const Point2 p = before.from_town(place);
